@@ -1,0 +1,59 @@
+# Needs make, Rust (cargo) and Python >= 3.11 with venv; all else goes to .venv.
+
+PYTHON ?= python3
+VENV   ?= .venv
+CARGO  ?= cargo
+PY     := $(VENV)/bin/python
+
+# The tests use the release profile: the numerics are too slow without
+# optimisation, and the extension below reuses the compiled dependencies.
+PROFILE := --release
+
+TOOLS     := $(VENV)/.tools.stamp
+EXTENSION := $(VENV)/.extension.stamp
+PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
+RUST      := $(shell find rust -name '*.rs')
+
+.PHONY: build example test check bench docs clean
+.DEFAULT_GOAL := build
+
+build: $(EXTENSION)
+
+$(TOOLS): requirements-dev.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or later is needed: make PYTHON=...")'
+	test -x $(PY) || $(PYTHON) -m venv $(VENV)
+	$(PY) -m pip install --quiet --disable-pip-version-check -r requirements-dev.txt
+	touch $@
+
+# The Python sources are installed in place: only Rust changes need a rebuild.
+$(EXTENSION): $(TOOLS) $(PACKAGE) $(RUST)
+	VIRTUAL_ENV="$(abspath $(VENV))" $(PY) -m maturin develop $(PROFILE) --locked
+	touch $@
+
+example: $(EXTENSION)
+	$(PY) examples/kishan_1973.py
+
+test: $(EXTENSION)
+	$(CARGO) test $(PROFILE) --locked
+	$(PY) -m pytest
+
+check: $(EXTENSION)
+	$(CARGO) fmt --check
+	$(CARGO) clippy $(PROFILE) --locked --all-targets -- -D warnings
+	PYO3_PYTHON="$(abspath $(PY))" $(CARGO) clippy $(PROFILE) --locked --all-targets --features python -- -D warnings
+	$(PY) -m ruff check
+	$(PY) -m ruff format --check
+	$(PY) -m mypy
+	$(PY) -m mypy.stubtest spanwise._core
+
+bench:
+	$(CARGO) bench --locked
+
+docs:
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
+
+clean:
+	$(CARGO) clean
+	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache
+	rm -f python/spanwise/_core*.so python/spanwise/_core*.pyd
+	find python tests examples -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,23 @@
+"""What vehicles do to bridges: dynamic response of beam bridges by a few modes and force summation."""
+
+from spanwise import vehicles
+from spanwise._core import __version__
+from spanwise.bridge import Bridge, Modes
+from spanwise.crossing import cross
+from spanwise.run import Envelope, Extremes, Run
+from spanwise.table import ImpactFactors
+from spanwise.vehicles import Axle, Vehicle
+
+__all__ = [
+    "Axle",
+    "Bridge",
+    "Envelope",
+    "Extremes",
+    "ImpactFactors",
+    "Modes",
+    "Run",
+    "Vehicle",
+    "__version__",
+    "cross",
+    "vehicles",
+]

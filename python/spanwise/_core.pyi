@@ -1,0 +1,89 @@
+from typing import Any, Final, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Bridge", "Crossing", "Vehicle", "__version__", "cross"]
+
+__version__: Final[str]
+
+@final
+class Bridge:
+    def __new__(
+        cls,
+        *,
+        length: float,
+        supports: list[tuple[float, str]],
+        flexural_rigidity: list[float],
+        mass: list[float],
+        stations_per_span: list[int],
+        stations: list[float] | None,
+        point_masses: list[tuple[float, float]],
+    ) -> Bridge: ...
+    @staticmethod
+    def continuous(
+        *,
+        spans: list[float],
+        ends: tuple[str, str],
+        flexural_rigidity: list[float],
+        mass: list[float],
+        stations_per_span: list[int],
+        stations: list[float] | None,
+        point_masses: list[tuple[float, float]],
+    ) -> Bridge: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def supports(self) -> list[tuple[float, str]]: ...
+    @property
+    def span_bounds(self) -> NDArray[np.float64]: ...
+    @property
+    def flexural_rigidity(self) -> NDArray[np.float64]: ...
+    @property
+    def stations(self) -> NDArray[np.float64]: ...
+    @property
+    def masses(self) -> NDArray[np.float64]: ...
+    def default_sections(self) -> NDArray[np.float64]: ...
+    def modes(
+        self, count: int, x: NDArray[np.float64] | None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]: ...
+    def flexibility(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def redundant_stiffness(self) -> NDArray[np.float64]: ...
+    def outer_reactions(self) -> list[tuple[float, str, NDArray[np.float64]]]: ...
+    def influence_line(
+        self, quantity: str, at: float, x: NDArray[np.float64], name: str
+    ) -> NDArray[np.float64]: ...
+
+@final
+class Vehicle:
+    def __new__(
+        cls, *, mass: float, pitch_inertia: float, cg_height: float, axles: list[list[float]]
+    ) -> Vehicle: ...
+    def static_loads(self, gravity: float) -> NDArray[np.float64]: ...
+    def frequencies(self, locked: bool) -> NDArray[np.float64]: ...
+
+@final
+class Crossing:
+    def envelope(self, quantity: str) -> list[NDArray[np.float64]]: ...
+    def impact_factors(
+        self, quantity: str, sense: str, ratio: str, mask: float
+    ) -> NDArray[np.float64]: ...
+
+def cross(
+    bridge: Bridge,
+    vehicle: Vehicle,
+    *,
+    speed: float,
+    drive: str,
+    modes: int,
+    damping: list[float],
+    damping_matrix: NDArray[np.float64] | None,
+    beta: float,
+    step: float | None,
+    approach: float,
+    tail: float,
+    gravity: float,
+    sections: list[float] | None,
+    recovery: str,
+    histories: bool,
+) -> tuple[Crossing, dict[str, Any]]: ...

@@ -1,0 +1,1 @@
+"""A case file: bridge, vehicle and crossing in TOML."""

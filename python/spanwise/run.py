@@ -1,0 +1,365 @@
+"""What a crossing gives: histories, extremes, impact factors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise import _core
+from spanwise.bridge import Bridge
+from spanwise.table import ImpactFactors
+from spanwise.vehicles import Vehicle
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from spanwise.plotting import RunPlot
+
+Array: TypeAlias = NDArray[np.float64]
+Quantity: TypeAlias = Literal[
+    "deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"
+]
+Ratio: TypeAlias = Literal["extremes", "at-dynamic-extreme", "at-static-extreme"]
+
+QUANTITIES: tuple[Quantity, ...] = (
+    "deflection",
+    "moment",
+    "shear",
+    "reactions",
+    "clamp_moments",
+    "axle_loads",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Extremes:
+    """Extremes of a response, one for each section (or support, clamp, axle).
+
+    Attributes
+    ----------
+    value : ndarray
+        The extremes [m, N m or N].
+    time : ndarray
+        When they occur [s].
+    position : ndarray
+        Where the front axle is then [m].
+    partner : ndarray
+        The static response then, for dynamic extremes; the dynamic one, for static extremes.
+    """
+
+    value: Array
+    time: Array
+    position: Array
+    partner: Array
+
+    @classmethod
+    def _of(cls, columns: Array) -> Extremes:
+        return cls(*(np.ascontiguousarray(column) for column in columns.T))
+
+
+@dataclass(frozen=True, eq=False)
+class Envelope:
+    """Largest and smallest values of a quantity over the crossing, dynamic and static.
+
+    Attributes
+    ----------
+    x : ndarray
+        Positions of the sections, supports or clamps [m]; for axle loads the axles' numbers from 1.
+    max, min : Extremes
+        Of the dynamic response.
+    static_max, static_min : Extremes
+        Of the response to the static axle loads at the same positions.
+    """
+
+    x: Array
+    max: Extremes
+    min: Extremes
+    static_max: Extremes
+    static_min: Extremes
+
+
+class Responses:
+    """Responses at every instant, as arrays of shape (time, section) and the like.
+
+    Attributes are ``deflection`` [m], ``moment`` [N m], ``shear`` [N] with a last axis for the left
+    and the right side of each section, ``shear_left``, ``shear_right``, ``reactions`` (time, support)
+    [N] and ``clamp_moments`` (time, clamp) [N m]. Deflections are down, moments sagging, shears sums
+    of the upward forces to the left, reactions up.
+    """
+
+    def __init__(self, values: Array, ranges: Mapping[str, tuple[int, int]], what: str) -> None:
+        self._values, self._ranges, self._what = values, ranges, what
+
+    def _columns(self, first: str, last: str | None = None) -> Array:
+        if self._values.size == 0:
+            raise ValueError(
+                f"{self._what} histories were not kept: call cross(..., histories=True)"
+            )
+        start, stop = self._ranges[first][0], self._ranges[last or first][1]
+        return self._values[:, start:stop]
+
+    @property
+    def deflection(self) -> Array:
+        """Deflections down [m], shape (time, section)."""
+        return self._columns("deflection")
+
+    @property
+    def moment(self) -> Array:
+        """Bending moments, sagging positive [N m], shape (time, section)."""
+        return self._columns("moment")
+
+    @property
+    def shear_left(self) -> Array:
+        """Shear just left of the sections [N], shape (time, section)."""
+        return self._columns("shear_left")
+
+    @property
+    def shear_right(self) -> Array:
+        """Shear just right of the sections [N], shape (time, section)."""
+        return self._columns("shear_right")
+
+    @property
+    def shear(self) -> Array:
+        """Shear just left and just right of the sections [N], shape (time, section, 2)."""
+        both = self._columns("shear_left", "shear_right")
+        return both.reshape(len(both), 2, -1).transpose(0, 2, 1)
+
+    @property
+    def reactions(self) -> Array:
+        """Support reactions, up [N], shape (time, support)."""
+        return self._columns("reactions")
+
+    @property
+    def clamp_moments(self) -> Array:
+        """Moments of the clamped ends, sagging positive [N m], shape (time, clamp)."""
+        return self._columns("clamp_moments")
+
+
+@dataclass(frozen=True, eq=False)
+class VehicleMotion:
+    """The vehicle during the crossing; every array has one entry for each instant.
+
+    Attributes
+    ----------
+    heave, heave_velocity, heave_acceleration : ndarray, shape (time,)
+        Body, down from its static position [m, m/s, m/s2].
+    pitch, pitch_velocity, pitch_acceleration : ndarray, shape (time,)
+        Body, nose down [rad, rad/s, rad/s2].
+    travel, speed, acceleration : ndarray, shape (time,)
+        Centre of mass along the road, from the left end of the bridge [m, m/s, m/s2].
+    axle_positions : ndarray, shape (time, axle)
+        From the left end of the bridge [m].
+    suspension_shortenings : ndarray, shape (time, axle)
+        Since the static state [m].
+    friction : ndarray, shape (time, axle)
+        Friction forces in the suspensions [N].
+    """
+
+    heave: Array
+    heave_velocity: Array
+    heave_acceleration: Array
+    pitch: Array
+    pitch_velocity: Array
+    pitch_acceleration: Array
+    travel: Array
+    speed: Array
+    acceleration: Array
+    axle_positions: Array
+    suspension_shortenings: Array
+    friction: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ModalMotion:
+    """Modal coordinates during the crossing, for modes of unit modal mass.
+
+    Attributes
+    ----------
+    coordinates, velocities, accelerations : ndarray, shape (time, mode)
+        A and its rates [m kg^1/2, per s, per s2].
+    """
+
+    coordinates: Array
+    velocities: Array
+    accelerations: Array
+
+
+class Run(Responses):
+    """The result of a crossing.
+
+    Dynamic responses are attributes of the run itself, static ones of `static`.
+
+    Attributes
+    ----------
+    bridge : Bridge
+        The bridge.
+    truck : Vehicle
+        The vehicle.
+    settings : dict
+        The settings used, defaults filled in.
+    time : ndarray, shape (time,)
+        Time since the front axle was at the start of the approach [s].
+    sections : ndarray, shape (section,)
+        Where responses are looked at [m].
+    frequencies : ndarray, shape (mode,)
+        Natural frequencies of the included modes [Hz].
+    axle_loads : ndarray, shape (time, axle)
+        Axle loads [N].
+    static_axle_loads : ndarray, shape (axle,)
+        Static axle loads [N].
+    static : Responses
+        Responses to the static axle loads at the same positions.
+    vehicle : VehicleMotion
+        The motion of the vehicle.
+    modal : ModalMotion
+        The motion of the bridge in modal coordinates.
+    final_speed : float
+        Speed at the end [m/s].
+    steps : int
+        Number of time steps.
+    """
+
+    def __init__(
+        self,
+        bridge: Bridge,
+        truck: Vehicle,
+        settings: dict[str, object],
+        core: _core.Crossing,
+        arrays: Mapping[str, Any],
+    ) -> None:
+        super().__init__(arrays["dynamic"], arrays["ranges"], "dynamic")
+        self._core = core
+        self.bridge, self.truck, self.settings = bridge, truck, settings
+        self.time: Array = arrays["time"]
+        self.sections: Array = arrays["sections"]
+        self.frequencies: Array = arrays["omega"] / (2.0 * np.pi)
+        self.axle_loads: Array = arrays["axle_loads"]
+        self.static_axle_loads: Array = arrays["static_loads"]
+        self.static = Responses(arrays["static"], arrays["ranges"], "static")
+        self.vehicle = VehicleMotion(
+            *arrays["body"].T,
+            arrays["positions"],
+            arrays["suspension_shortenings"],
+            arrays["friction"],
+        )
+        self.modal = ModalMotion(arrays["a"], arrays["a_dot"], arrays["a_ddot"])
+        self.final_speed: float = arrays["final_speed"]
+        self.steps: int = len(self.time) - 1
+
+    def __repr__(self) -> str:
+        return (
+            f"Run({len(self.frequencies)} modes, {self.steps} steps of {self.settings['step']:.4g} s, "
+            f"{len(self.sections)} sections, recovery by {self.settings['recovery']})"
+        )
+
+    @property
+    def supports(self) -> Array:
+        """Positions of the supports [m], in the order of `reactions`."""
+        return np.array([x for x, _ in self.bridge.supports])
+
+    def envelope(self, quantity: Quantity) -> Envelope:
+        """Extremes of a quantity along the bridge, with their times and vehicle positions.
+
+        They include the instants at which an axle stands on a section, on both sides of it. The
+        shears on the left and on the right of a section count together.
+
+        Parameters
+        ----------
+        quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
+            The quantity.
+        """
+        clamps = np.array([x for x, kind in self.bridge.supports if kind == "clamped"])
+        columns = (Extremes._of(each) for each in self._core.envelope(quantity))
+        where = {
+            "reactions": self.supports,
+            "clamp_moments": clamps,
+            "axle_loads": np.arange(1.0, len(self.static_axle_loads) + 1.0),
+        }
+        return Envelope(where.get(quantity, self.sections), *columns)
+
+    @cached_property
+    def impact_factors(self) -> ImpactFactors:
+        """Impact factors by section, support and axle: dynamic maximum by static maximum."""
+        return self.ratios()
+
+    def ratios(self, ratio: Ratio = "extremes", mask: float | None = None) -> ImpactFactors:
+        """Impact factors by one of three definitions.
+
+        Parameters
+        ----------
+        ratio : {"extremes", "at-dynamic-extreme", "at-static-extreme"}, optional
+            Dynamic extreme by static extreme, which may occur at different times; dynamic extreme by
+            the static value at that time; dynamic value at the time of the static extreme by that
+            extreme.
+        mask : float, optional
+            Give none where the static value is at most this fraction of the largest along the
+            bridge; by default as the run was told.
+
+        Returns
+        -------
+        ImpactFactors
+            NaN where masked.
+        """
+        masked_below = float(self.settings["mask"] if mask is None else mask)  # type: ignore[arg-type]
+
+        def factors(quantity: Quantity, sense: str) -> Array:
+            return self._core.impact_factors(quantity, sense, ratio, masked_below)
+
+        return ImpactFactors(
+            ratio=ratio,
+            mask=masked_below,
+            sections=self.sections,
+            deflection=factors("deflection", "positive"),
+            sagging=factors("moment", "positive"),
+            hogging=factors("moment", "negative"),
+            shear=factors("shear", "either"),
+            supports=self.supports,
+            reactions=factors("reactions", "positive"),
+            axle_loads=factors("axle_loads", "positive"),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The results as plain lists and numbers, ``None`` where an impact factor is masked.
+
+        Keys: ``sections``, ``supports`` [m], ``frequencies`` [Hz]; for each quantity the lists
+        ``max``, ``min``, ``static_max``, ``static_min`` with ``..._time`` [s] and ``..._position``
+        [m] of each; ``impact_factors``; ``final_speed`` [m/s]; ``steps``; ``settings``; ``version``.
+        """
+        from spanwise.report import as_dict
+
+        return as_dict(self)
+
+    def to_json(self, path: str | Path) -> None:
+        """Write `to_dict` to a JSON file."""
+        from spanwise.report import write_json
+
+        write_json(self, path)
+
+    def to_csv(self, directory: str | Path) -> None:
+        """Write impact factors, extremes and histories as CSV files into a directory."""
+        from spanwise.report import write_csv
+
+        write_csv(self, directory)
+
+    def to_pandas(self, quantity: Quantity = "moment") -> pd.DataFrame:
+        """History of a quantity as a frame, time [s] down, sections, supports or axles across.
+
+        Shears have two columns for each section, ``"left"`` and ``"right"`` of it. Needs the extra
+        ``spanwise[pandas]``.
+        """
+        from spanwise.report import as_frame
+
+        return as_frame(self, quantity)
+
+    @property
+    def plot(self) -> RunPlot:
+        """Figures of the run; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import RunPlot
+
+        return RunPlot(self)

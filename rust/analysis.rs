@@ -1,0 +1,124 @@
+//! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
+
+use crate::bridge::Bridge;
+use crate::crossing::{Damping, History, ModalBridge, Settings, cross};
+use crate::envelope::{Envelope, Responded, axle_loads, survey};
+use crate::error::Error;
+use crate::flexibility::Flexibility;
+use crate::influence::{Quantity, Responses};
+use crate::modes::Modes;
+use crate::recovery::{Recovery, Rows};
+use crate::vehicle::Vehicle;
+
+/// Most memory that kept responses may take [bytes].
+pub const MAX_RESPONSE_BYTES: usize = 2 << 30;
+
+/// Most sections looked at.
+pub const MAX_SECTIONS: usize = 20_000;
+
+/// A bridge with everything that does not depend on the vehicle, worked out once.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// Positions of the sections [m].
+    pub sections: Vec<f64>,
+    /// Flexibility on a mesh that has them as nodes.
+    pub flexibility: Flexibility,
+    /// The included modes.
+    pub modes: Modes,
+    /// The bridge in these modes.
+    pub model: ModalBridge,
+    /// The responses looked at.
+    pub responses: Responses,
+    /// How they follow from modal states.
+    pub rows: Rows,
+}
+
+impl Analysis {
+    /// Of `bridge` in the given `modes`, looking at `sections` [m] (by default [`Bridge::default_sections`]).
+    pub fn new(
+        bridge: &Bridge,
+        modes: Modes,
+        damping: &Damping,
+        sections: Option<&[f64]>,
+        recovery: Recovery,
+    ) -> Result<Self, Error> {
+        let sections = match sections {
+            Some(sections) => checked_sections(sections, bridge.length())?,
+            None => bridge.default_sections(),
+        };
+        let flexibility = Flexibility::new(bridge, &sections)?;
+        let lines = modes.lines(bridge, &flexibility);
+        let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
+        let responses = Responses::new(&flexibility, bridge, &sections);
+        let rows = Rows::new(bridge, &responses, &modes, &lines, flexibility.mesh(), (damping, &model), recovery);
+        Ok(Analysis { sections, flexibility, modes, model, responses, rows })
+    }
+
+    /// One crossing. With `keep` the responses at every instant are kept beside their extremes.
+    pub fn cross(
+        &self,
+        vehicle: &Vehicle,
+        settings: &Settings,
+        keep: bool,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Outcome, Error> {
+        let history = cross(&self.model, vehicle, settings, go_on)?;
+        let bytes = 2 * size_of::<f64>() * history.len() * self.rows.len();
+        if keep && bytes > MAX_RESPONSE_BYTES {
+            return Err(Error::input(
+                "histories",
+                "true",
+                format!(
+                    "{} responses at {} instants would take {:.1} GB, more than {:.1}: use histories = false \
+                     (extremes only), fewer sections or a longer step",
+                    self.rows.len(),
+                    history.len(),
+                    bytes as f64 / 1e9,
+                    MAX_RESPONSE_BYTES as f64 / 1e9
+                ),
+            ));
+        }
+        let (envelope, responded) = survey(&history, &self.rows, &self.responses, keep, go_on)?;
+        Ok(Outcome { axle_loads: axle_loads(&history), history, envelope, responded })
+    }
+
+    /// Extremes of one quantity; shears on both sides of a section count together.
+    pub fn envelope_of(&self, outcome: &Outcome, quantity: Quantity) -> Envelope {
+        let of = |quantity| outcome.envelope.of(self.responses.range(quantity));
+        match quantity {
+            Quantity::ShearLeft | Quantity::ShearRight => of(Quantity::ShearLeft).merged(&of(Quantity::ShearRight)),
+            other => of(other),
+        }
+    }
+}
+
+/// What a crossing gives.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// States, step after step.
+    pub history: History,
+    /// Extremes of all responses.
+    pub envelope: Envelope,
+    /// Extremes of the axle loads.
+    pub axle_loads: Envelope,
+    /// Responses at every instant, if kept.
+    pub responded: Responded,
+}
+
+fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {
+    if sections.is_empty() || sections.len() > MAX_SECTIONS {
+        let allowed = format!("give 1 to {MAX_SECTIONS} positions in metres");
+        return Err(Error::input("sections", format!("{} positions", sections.len()), allowed));
+    }
+    for (i, &x) in sections.iter().enumerate() {
+        if !(x.is_finite() && x >= 0.0 && x <= length) {
+            let allowed = format!("must lie on the beam, 0 to {length} m");
+            return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
+        }
+        if i > 0 && x - sections[i - 1] <= crate::bridge::COINCIDENT * length {
+            let allowed = format!("must be greater than the section before it, {} m", sections[i - 1]);
+            return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
+        }
+    }
+    Ok(sections.to_vec())
+}

@@ -1,0 +1,325 @@
+//! The bridge as an engineer describes it (spans, supports, EI, mass), checked once and valid from then on.
+
+use crate::error::{Error, finite, not_negative, positive};
+
+/// Most stations a bridge may have: F is a dense matrix of this order, and its eigensolution grows with the cube.
+pub const MAX_STATIONS: usize = 5000;
+
+/// Two points closer than this fraction of the length are one point.
+pub const COINCIDENT: f64 = 1e-9;
+
+/// How a support holds the beam.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fixity {
+    /// Deflection held, rotation free.
+    Pinned,
+    /// Deflection and rotation held; only at an end of the beam.
+    Clamped,
+}
+
+/// A support of the beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// Position from the left end [m].
+    pub at: f64,
+    /// What it holds.
+    pub fixity: Fixity,
+}
+
+/// A lumped mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Position from the left end [m].
+    pub at: f64,
+    /// Mass [kg].
+    pub mass: f64,
+}
+
+/// Where the distributed mass is lumped.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stations {
+    /// This many equal shares of every span, each mass in the middle of its share.
+    PerSpan(Vec<usize>),
+    /// Positions chosen by the user [m]; each takes the mass up to half-way to its neighbours, within its span.
+    At(Vec<f64>),
+}
+
+/// A straight beam on supports, its mass lumped at stations.
+///
+/// A *span* is a stretch between neighbouring supports or ends, overhangs included; EI is constant in each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bridge {
+    length: f64,
+    supports: Vec<Support>,
+    /// Ends and supports, left to right: `span i` runs from `bounds[i]` to `bounds[i + 1]` [m].
+    bounds: Vec<f64>,
+    flexural_rigidity: Vec<f64>,
+    stations: Vec<Station>,
+}
+
+impl Bridge {
+    /// A bridge of `length` [m] on `supports`, with EI [N m²] and mass per length [kg/m] given once or per span.
+    ///
+    /// Point masses (position [m], mass [kg]) are stations of their own, or add to the station they stand on.
+    pub fn new(
+        length: f64,
+        supports: Vec<Support>,
+        flexural_rigidity: &[f64],
+        mass: &[f64],
+        stations: &Stations,
+        point_masses: &[(f64, f64)],
+    ) -> Result<Self, Error> {
+        positive("length", length)?;
+        let supports = checked_supports(length, supports)?;
+        let near = COINCIDENT * length;
+        let mut bounds = vec![0.0];
+        bounds.extend(supports.iter().map(|s| s.at).filter(|&x| x > near && x < length - near));
+        bounds.push(length);
+        let spans = bounds.len() - 1;
+
+        let flexural_rigidity = per_span("EI", flexural_rigidity, spans)?;
+        for (i, &ei) in flexural_rigidity.iter().enumerate() {
+            positive(indexed("EI", i, spans), ei)?;
+        }
+        let mass = per_span("mass", mass, spans)?;
+        for (i, &m) in mass.iter().enumerate() {
+            not_negative(indexed("mass", i, spans), m)?;
+        }
+
+        let mut lumps = match stations {
+            Stations::PerSpan(counts) => equal_shares(&bounds, &mass, counts)?,
+            Stations::At(positions) => tributary_shares(&bounds, &mass, positions)?,
+        };
+        for (i, &(at, m)) in point_masses.iter().enumerate() {
+            on_the_bridge(&format!("point_masses[{i}]"), at, length)?;
+            positive(format!("point_masses[{i}] mass"), m)?;
+            match lumps.iter_mut().find(|s| (s.at - at).abs() <= near) {
+                Some(station) => station.mass += m,
+                None => lumps.push(Station { at, mass: m }),
+            }
+        }
+        if lumps.len() > MAX_STATIONS {
+            return Err(too_many(lumps.len()));
+        }
+        lumps.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near);
+        // A mass over a support does not move: it takes no part in the dynamics.
+        lumps.retain(|s| s.mass > 0.0 && !held(s.at));
+        if lumps.is_empty() {
+            return Err(Error::input("mass", "0", "at least one station off the supports must carry mass"));
+        }
+        Ok(Bridge { length, supports, bounds, flexural_rigidity, stations: lumps })
+    }
+
+    /// A bridge laid out as consecutive `spans` [m] with supports between them and the given ends (`None` is free).
+    pub fn continuous(
+        spans: &[f64],
+        ends: [Option<Fixity>; 2],
+        flexural_rigidity: &[f64],
+        mass: &[f64],
+        stations: &Stations,
+        point_masses: &[(f64, f64)],
+    ) -> Result<Self, Error> {
+        if spans.is_empty() {
+            return Err(Error::input("spans", "[]", "needs at least one length in metres"));
+        }
+        if spans.len() > MAX_STATIONS {
+            return Err(Error::input("spans", format!("{} spans", spans.len()), format!("at most {MAX_STATIONS}")));
+        }
+        let mut supports = Vec::with_capacity(spans.len() + 1);
+        let mut x = 0.0;
+        for (i, &span) in spans.iter().enumerate() {
+            positive(format!("spans[{i}]"), span)?;
+            let fixity = if i == 0 { ends[0] } else { Some(Fixity::Pinned) };
+            supports.extend(fixity.map(|fixity| Support { at: x, fixity }));
+            x += span;
+        }
+        finite("spans", x)?;
+        supports.extend(ends[1].map(|fixity| Support { at: x, fixity }));
+        Bridge::new(x, supports, flexural_rigidity, mass, stations, point_masses)
+    }
+
+    /// Length [m].
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Supports, left to right.
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    /// Ends and supports, left to right [m]: the spans are the stretches between them.
+    pub fn span_bounds(&self) -> &[f64] {
+        &self.bounds
+    }
+
+    /// EI of each span [N m²].
+    pub fn flexural_rigidity(&self) -> &[f64] {
+        &self.flexural_rigidity
+    }
+
+    /// The moving masses, left to right (masses over supports are left out: they do not move).
+    pub fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    /// EI at x [N m²], to the right of x where it changes there.
+    pub fn flexural_rigidity_at(&self, x: f64) -> f64 {
+        let span = self.bounds[1..self.bounds.len() - 1].partition_point(|&b| b <= x);
+        self.flexural_rigidity[span]
+    }
+
+    /// Sections looked at unless the user chooses: mass stations, supports and the tenth points of every span [m].
+    pub fn default_sections(&self) -> Vec<f64> {
+        let mut sections: Vec<f64> = self.stations.iter().map(|s| s.at).collect();
+        for span in self.bounds.windows(2) {
+            sections.extend((0..=10).map(|i| match i {
+                10 => span[1],
+                _ => span[0] + (span[1] - span[0]) * f64::from(i) / 10.0,
+            }));
+        }
+        sections.sort_by(f64::total_cmp);
+        sections.dedup_by(|b, a| *b - *a <= COINCIDENT * self.length);
+        sections
+    }
+}
+
+/// Supports in order, each on the beam, none twice, clamps only at the ends, no rigid-body motion left.
+fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Support>, Error> {
+    let near = COINCIDENT * length;
+    if supports.len() > MAX_STATIONS {
+        return Err(Error::input(
+            "supports",
+            format!("{} supports", supports.len()),
+            format!("at most {MAX_STATIONS}"),
+        ));
+    }
+    for (i, support) in supports.iter_mut().enumerate() {
+        on_the_bridge(&format!("supports[{i}]"), support.at, length)?;
+        for end in [0.0, length] {
+            if (support.at - end).abs() <= near {
+                support.at = end;
+            }
+        }
+        if support.fixity == Fixity::Clamped && support.at != 0.0 && support.at != length {
+            return Err(Error::input(
+                format!("supports[{i}]"),
+                format!("clamped at {} m", support.at),
+                format!("a clamp must be at an end of the beam, 0 or {length} m"),
+            ));
+        }
+    }
+    supports.sort_by(|a, b| a.at.total_cmp(&b.at));
+    for pair in supports.windows(2) {
+        if pair[1].at - pair[0].at <= near {
+            return Err(Error::input(
+                "supports",
+                format!("{} m and {} m", pair[0].at, pair[1].at),
+                "two supports must not stand at the same position",
+            ));
+        }
+    }
+    let clamped = supports.iter().any(|s| s.fixity == Fixity::Clamped);
+    if !clamped && supports.len() < 2 {
+        let listed: Vec<String> = supports.iter().map(|s| format!("pinned at {} m", s.at)).collect();
+        let motion = if supports.is_empty() { "fall" } else { "rotate about its only support" };
+        return Err(Error::Unstable { supports: listed.join(", "), motion });
+    }
+    Ok(supports)
+}
+
+fn on_the_bridge(key: &str, at: f64, length: f64) -> Result<(), Error> {
+    if at.is_finite() && at >= -COINCIDENT * length && at <= length * (1.0 + COINCIDENT) {
+        Ok(())
+    } else {
+        Err(Error::input(key, format!("{at} m"), format!("must lie on the beam, 0 to {length} m")))
+    }
+}
+
+fn too_many(count: usize) -> Error {
+    Error::input("stations", format!("{count} stations"), format!("at most {MAX_STATIONS} mass stations in all"))
+}
+
+fn indexed(key: &str, i: usize, n: usize) -> String {
+    if n == 1 { key.to_string() } else { format!("{key}[{i}]") }
+}
+
+/// A list of one value per span from one value or as many as there are spans.
+fn per_span(key: &str, values: &[f64], spans: usize) -> Result<Vec<f64>, Error> {
+    match values.len() {
+        1 => Ok(vec![values[0]; spans]),
+        n if n == spans => Ok(values.to_vec()),
+        n => Err(Error::input(
+            key,
+            format!("{n} values"),
+            format!("give one number, or one for each of the {spans} spans (overhangs count as spans)"),
+        )),
+    }
+}
+
+/// n equal shares of every span, the mass of each in its middle.
+fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<Station>, Error> {
+    let spans = mass.len();
+    if counts.len() != 1 && counts.len() != spans {
+        return Err(Error::input(
+            "stations_per_span",
+            format!("{} values", counts.len()),
+            format!("give one whole number, or one for each of the {spans} spans (overhangs count as spans)"),
+        ));
+    }
+    let count_of = |span: usize| if counts.len() == 1 { counts[0] } else { counts[span] };
+    let total = (0..spans).fold(0_usize, |sum, span| sum.saturating_add(count_of(span)));
+    if total > MAX_STATIONS {
+        return Err(too_many(total));
+    }
+    let mut stations = Vec::with_capacity(total);
+    for span in 0..spans {
+        let count = count_of(span);
+        if count == 0 && mass[span] > 0.0 {
+            return Err(Error::input("stations_per_span", 0, "must be 1 or more in a span that has mass"));
+        }
+        let share = (bounds[span + 1] - bounds[span]) / count as f64;
+        stations.extend(
+            (0..count).map(|i| Station { at: bounds[span] + share * (i as f64 + 0.5), mass: mass[span] * share }),
+        );
+    }
+    Ok(stations)
+}
+
+/// Each station takes the mass up to half-way to its neighbours; no share reaches across a support.
+fn tributary_shares(bounds: &[f64], mass: &[f64], positions: &[f64]) -> Result<Vec<Station>, Error> {
+    let length = bounds[bounds.len() - 1];
+    let near = COINCIDENT * length;
+    if positions.len() > MAX_STATIONS {
+        return Err(too_many(positions.len()));
+    }
+    for (i, &at) in positions.iter().enumerate() {
+        on_the_bridge(&format!("stations[{i}]"), at, length)?;
+        if i > 0 && at - positions[i - 1] <= near {
+            return Err(Error::input(
+                format!("stations[{i}]"),
+                format!("{at} m"),
+                format!("must be greater than the station before it, {} m", positions[i - 1]),
+            ));
+        }
+    }
+    let mut stations: Vec<Station> = positions.iter().map(|&at| Station { at, mass: 0.0 }).collect();
+    for (span, bound) in bounds.windows(2).enumerate() {
+        let first = positions.partition_point(|&x| x < bound[0] - near);
+        let last = positions.partition_point(|&x| x <= bound[1] + near);
+        if first == last && mass[span] > 0.0 {
+            return Err(Error::input(
+                "stations",
+                format!("none from {} m to {} m", bound[0], bound[1]),
+                "every span that has mass needs at least one station",
+            ));
+        }
+        for i in first..last {
+            let from = if i == first { bound[0] } else { 0.5 * (positions[i - 1] + positions[i]) };
+            let to = if i + 1 == last { bound[1] } else { 0.5 * (positions[i] + positions[i + 1]) };
+            stations[i].mass += mass[span] * (to - from);
+        }
+    }
+    Ok(stations)
+}

@@ -1,0 +1,393 @@
+//! One crossing: from the front axle at the start of the approach until the last axle has left and the tail is over.
+
+use faer::{Mat, Side};
+
+use crate::bridge::Bridge;
+use crate::contact::Contact;
+use crate::error::{Error, finite, not_negative, positive};
+use crate::flexibility::Flexibility;
+use crate::line::Line;
+use crate::modes::Modes;
+use crate::path::{ModeShapes, Prescribed, Rolling};
+use crate::step::{Body, Geometry, ModalDamping, State, Stepper, Unsettled};
+use crate::vehicle::{Suspension, Vehicle};
+
+/// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
+pub const MAX_STEPS: usize = 2_000_000;
+
+/// Steps to the shortest coupled period unless the user gives a step.
+const STEPS_PER_PERIOD: f64 = 20.0;
+
+/// Steps to the narrowest panel unless the user gives a step.
+const STEPS_PER_PANEL: f64 = 100.0;
+
+/// Steps between two questions whether to go on.
+const POLL_EVERY: usize = 1024;
+
+/// How the vehicle moves along the bridge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drive {
+    /// At the given speed throughout.
+    ConstantSpeed,
+    /// Traction and resistance in balance on the level: the speed follows the slope under the axles ([KTN73] §4).
+    ConstantTraction,
+}
+
+/// Viscous damping of the bridge.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Damping {
+    /// Ratio to critical, one for all modes or one for each.
+    Ratios(Vec<f64>),
+    /// C at the mass stations [N s/m]: D = ΦᵀCΦ is full in general.
+    Viscous(Mat<f64>),
+}
+
+impl Damping {
+    /// Checked against the bridge, and projected on the included modes.
+    pub fn modal(&self, modes: &Modes) -> Result<ModalDamping, Error> {
+        match self {
+            Damping::Ratios(ratios) => {
+                if ratios.len() != 1 && ratios.len() != modes.len() {
+                    let allowed = format!("give one ratio, or one for each of the {} modes", modes.len());
+                    return Err(Error::input("damping", format!("{} values", ratios.len()), allowed));
+                }
+                for &ratio in ratios {
+                    if !(ratio.is_finite() && (0.0..1.0).contains(&ratio)) {
+                        return Err(Error::input("damping", ratio, "must be a ratio to critical, from 0 to below 1"));
+                    }
+                }
+                let all = (0..modes.len()).map(|m| if ratios.len() == 1 { ratios[0] } else { ratios[m] });
+                Ok(ModalDamping::Classical(all.collect()))
+            }
+            Damping::Viscous(c) => {
+                let n = modes.shapes.nrows();
+                if c.nrows() != n || c.ncols() != n {
+                    let allowed = format!("C must be square with a row for each of the {n} moving masses");
+                    return Err(Error::input("damping", format!("{} x {} matrix", c.nrows(), c.ncols()), allowed));
+                }
+                let mut largest = 0.0_f64;
+                for value in (0..n).flat_map(|j| c.col(j).iter()) {
+                    largest = largest.max(finite("damping", *value)?.abs());
+                }
+                let near = 1e-9 * largest;
+                if (0..n).any(|i| (0..i).any(|j| (c[(i, j)] - c[(j, i)]).abs() > near)) {
+                    return Err(Error::input("damping", "unsymmetric C", "C must be symmetric"));
+                }
+                let lowest = c.self_adjoint_eigenvalues(Side::Lower).map_err(|e| Error::Modes(format!("{e:?}")))?[0];
+                if lowest < -near {
+                    let value = format!("C with the negative eigenvalue {lowest:.3e} N s/m");
+                    return Err(Error::input("damping", value, "C must not feed energy in: no negative eigenvalue"));
+                }
+                Ok(ModalDamping::Coupled(modes.shapes.transpose() * c * &modes.shapes))
+            }
+        }
+    }
+}
+
+/// The bridge in modal coordinates, ready to be crossed.
+#[derive(Debug, Clone)]
+pub struct ModalBridge {
+    /// Natural circular frequencies of the included modes [rad/s].
+    pub omega: Vec<f64>,
+    /// The included modes along the bridge.
+    pub shapes: ModeShapes,
+    /// Their damping.
+    pub damping: ModalDamping,
+    /// Narrowest distance between neighbouring stations, supports and ends [m].
+    pub narrowest_panel: f64,
+}
+
+impl ModalBridge {
+    /// From the modes of `bridge` and their `lines` on the mesh of `flexibility`.
+    pub fn new(
+        bridge: &Bridge,
+        flexibility: &Flexibility,
+        modes: &Modes,
+        lines: &[Line],
+        damping: &Damping,
+    ) -> Result<Self, Error> {
+        let mut points: Vec<f64> = bridge.span_bounds().to_vec();
+        points.extend(bridge.stations().iter().map(|s| s.at));
+        points.sort_by(f64::total_cmp);
+        let near = crate::bridge::COINCIDENT * bridge.length();
+        let widths = points.windows(2).map(|p| p[1] - p[0]).filter(|&w| w > near);
+        Ok(ModalBridge {
+            omega: modes.omega.clone(),
+            shapes: ModeShapes::new(flexibility.mesh(), lines),
+            damping: damping.modal(modes)?,
+            narrowest_panel: widths.fold(bridge.length(), f64::min),
+        })
+    }
+
+    /// Upper bound of the fastest circular frequency of bridge and vehicle together, suspensions locked [rad/s].
+    pub fn fastest_frequency(&self, vehicle: &Vehicle) -> f64 {
+        // The stiffness is that of the bridge plus that of the contact springs, whose largest eigenvalue is at most the
+        // vehicle's own plus the sum of k φ² (Weyl's inequality, and the trace).
+        let bridge = self.omega.iter().copied().fold(0.0, f64::max);
+        let own = vehicle.frequencies(Suspension::Locked).into_iter().fold(0.0, f64::max) * std::f64::consts::TAU;
+        let tyres: f64 = vehicle.axles().iter().map(|axle| axle.tyre_stiffness).sum();
+        (bridge.powi(2) + own.powi(2) + tyres * self.shapes.largest_sum_of_squares()).sqrt()
+    }
+}
+
+/// How a vehicle crosses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Speed at the start [m/s].
+    pub speed: f64,
+    /// How the vehicle moves.
+    pub drive: Drive,
+    /// Newmark's β, from 1/12 to 1/2 [-].
+    pub beta: f64,
+    /// Longest time step [s]; shortened so that a whole number of steps spans the crossing. By default a twentieth of the
+    /// shortest coupled period or a hundredth of the narrowest panel, whichever takes less time.
+    pub step: Option<f64>,
+    /// Rigid approach in front of the bridge [m].
+    pub approach: f64,
+    /// Free vibration kept after the last axle has left [s].
+    pub tail: f64,
+    /// Gravity [m/s²].
+    pub gravity: f64,
+}
+
+impl Settings {
+    /// Defaults for a given speed [m/s].
+    pub fn at_speed(speed: f64) -> Self {
+        Settings {
+            speed,
+            drive: Drive::ConstantSpeed,
+            beta: 1.0 / 6.0,
+            step: None,
+            approach: 0.0,
+            tail: 0.0,
+            gravity: 9.806_65,
+        }
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        positive("speed", self.speed)?;
+        not_negative("approach", self.approach)?;
+        not_negative("tail", self.tail)?;
+        positive("gravity", self.gravity)?;
+        if let Some(step) = self.step {
+            positive("step", step)?;
+        }
+        if !(self.beta >= 1.0 / 12.0 && self.beta <= 0.5) {
+            return Err(Error::input(
+                "beta",
+                self.beta,
+                "must be from 1/12 to 1/2 (1/6 linear, 1/4 average acceleration)",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Time step and number of steps for a path of this length [m], without the tail.
+    fn steps(&self, model: &ModalBridge, vehicle: &Vehicle, path: f64) -> Result<(f64, usize), Error> {
+        let fastest = model.fastest_frequency(vehicle);
+        let limit = if self.beta < 0.25 { 1.0 / (fastest * (0.25 - self.beta).sqrt()) } else { f64::INFINITY };
+        let resolved = std::f64::consts::TAU / fastest / STEPS_PER_PERIOD;
+        let longest = self.step.unwrap_or(resolved.min(model.narrowest_panel / STEPS_PER_PANEL / self.speed));
+        if longest > limit {
+            let frequency = fastest / std::f64::consts::TAU;
+            return Err(Error::StepTooLong { step: longest, beta: self.beta, limit, frequency });
+        }
+        // A path of a whole number of steps is not given one more because of rounding.
+        let count = (path / (self.speed * longest) - 1e-9).ceil().max(1.0);
+        if count + self.tail / longest > MAX_STEPS as f64 {
+            let (key, value) = match self.step {
+                Some(step) => ("step", format!("{step} s")),
+                None => ("speed", format!("{} m/s", self.speed)),
+            };
+            let allowed = format!(
+                "the crossing would take {:.3e} steps, at most {MAX_STEPS} are allowed",
+                count + self.tail / longest
+            );
+            return Err(Error::input(key, value, allowed));
+        }
+        Ok((path / (self.speed * count), count as usize))
+    }
+}
+
+/// States of a crossing, step after step. Arrays hold one row per instant.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct History {
+    /// Number of axles.
+    pub axles: usize,
+    /// Number of included modes.
+    pub modes: usize,
+    /// Time step [s]; the last row may end a shorter one.
+    pub step: f64,
+    /// Static axle loads [N].
+    pub static_loads: Vec<f64>,
+    /// Time since the front axle was at the start of the approach [s].
+    pub time: Vec<f64>,
+    /// Axle positions from the left end of the bridge [m], row by row.
+    pub positions: Vec<f64>,
+    /// Axle loads [N], row by row.
+    pub loads: Vec<f64>,
+    /// Modal coordinates [m kg^½], row by row.
+    pub a: Vec<f64>,
+    /// Modal velocities [m kg^½/s], row by row.
+    pub a_dot: Vec<f64>,
+    /// Modal accelerations [m kg^½/s²], row by row.
+    pub a_ddot: Vec<f64>,
+    /// Heave, pitch and travel of the body with their first and second derivatives, row by row (nine numbers).
+    pub body: Vec<f64>,
+    /// Suspension shortenings since the static state [m], row by row.
+    pub shortenings: Vec<f64>,
+    /// Friction forces [N], row by row.
+    pub friction: Vec<f64>,
+}
+
+impl History {
+    /// Number of instants.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there is no instant (never so after a crossing).
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// Speed of the centre of mass at the end [m/s].
+    pub fn final_speed(&self) -> f64 {
+        self.body.last_chunk::<9>().map_or(0.0, |row| row[7])
+    }
+
+    fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
+        self.time.push(time);
+        for (k, static_load) in self.static_loads.iter().enumerate() {
+            self.positions.push(geometry.position(k));
+            self.loads.push(static_load + state.increments[k]);
+        }
+        self.a.extend(state.modes.iter().map(|c| c.x));
+        self.a_dot.extend(state.modes.iter().map(|c| c.v));
+        self.a_ddot.extend(state.modes.iter().map(|c| c.a));
+        for c in [state.heave, state.pitch, state.travel] {
+            self.body.extend([c.x, c.v, c.a]);
+        }
+        self.shortenings.extend(&state.shortenings);
+        self.friction.extend(&state.friction);
+    }
+
+    /// Cuts the last step short: its end becomes the state this fraction of the way through it.
+    fn shorten_last(&mut self, fraction: f64) {
+        let [m, k] = [self.modes, self.axles];
+        let columns: [(&mut Vec<f64>, usize); 9] = [
+            (&mut self.time, 1),
+            (&mut self.positions, k),
+            (&mut self.loads, k),
+            (&mut self.a, m),
+            (&mut self.a_dot, m),
+            (&mut self.a_ddot, m),
+            (&mut self.body, 9),
+            (&mut self.shortenings, k),
+            (&mut self.friction, k),
+        ];
+        for (column, width) in columns {
+            let last = column.len() - width;
+            let (before, after) = column.split_at_mut(last);
+            for (b, a) in before[last - width..].iter().zip(after) {
+                *a = b + fraction * (*a - b);
+            }
+        }
+    }
+}
+
+/// Crosses the bridge once. `go_on` is asked now and then; when it says no, the crossing ends as interrupted.
+pub fn cross(
+    model: &ModalBridge,
+    vehicle: &Vehicle,
+    settings: &Settings,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<History, Error> {
+    settings.check()?;
+    let path = settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
+    let (h, steps) = settings.steps(model, vehicle, path)?;
+    let arms: Vec<f64> = vehicle.axles().iter().map(|axle| axle.position).collect();
+    let travel = -settings.approach - arms[0];
+    match settings.drive {
+        Drive::ConstantSpeed => {
+            let behind = arms.iter().map(|a| arms[0] - a).collect();
+            let with_tail = steps + (settings.tail / h - 1e-9).ceil() as usize;
+            let advance = path / steps as f64;
+            let geometry = Prescribed::new(&model.shapes, behind, -settings.approach, advance, with_tail);
+            march(model, vehicle, settings, h, path, travel, geometry, go_on)
+        }
+        Drive::ConstantTraction => {
+            let geometry = Rolling::new(&model.shapes, arms, vehicle.cg_height(), travel);
+            march(model, vehicle, settings, h, path, travel, geometry, go_on)
+        }
+    }
+}
+
+#[allow(clippy::too_many_arguments)]
+fn march(
+    model: &ModalBridge,
+    vehicle: &Vehicle,
+    settings: &Settings,
+    h: f64,
+    path: f64,
+    travel: f64,
+    mut geometry: impl Geometry<f64>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<History, Error> {
+    let static_loads = vehicle.static_loads(settings.gravity);
+    let contacts: Vec<Contact<f64>> =
+        vehicle.axles().iter().zip(&static_loads).map(|(axle, &load)| Contact::new(axle, load)).collect();
+    let body = Body { mass: vehicle.mass(), pitch_inertia: vehicle.pitch_inertia(), cg_height: vehicle.cg_height() };
+    let arms = vehicle.axles().iter().map(|axle| axle.position).collect();
+    let rolling = settings.drive == Drive::ConstantTraction;
+    let mut stepper = Stepper::new(&model.omega, &model.damping, body, contacts, arms, rolling, h, settings.beta);
+    let mut state = stepper.start(travel, settings.speed, &geometry);
+
+    let axles = static_loads.len();
+    let length = model.shapes.mesh().length();
+    let mut history = History { axles, modes: model.omega.len(), step: h, static_loads, ..History::default() };
+    history.record(0.0, &state, &geometry);
+    let mut left_at = None;
+    for n in 1.. {
+        let time = n as f64 * h;
+        let front = geometry.position(0);
+        stepper.advance(&mut state, &mut geometry).map_err(|unsettled| {
+            let what = match unsettled {
+                Unsettled::ContactForces => "contact forces",
+                Unsettled::AxlePositions => "axle positions",
+            };
+            Error::NoConvergence { what, time, position: front }
+        })?;
+        let position = geometry.position(0);
+        let energy = state.modes.iter().fold(state.heave.a + state.pitch.a, |sum, c| sum + c.a);
+        if !energy.is_finite() || !position.is_finite() {
+            return Err(Error::NotFinite { time, position: front });
+        }
+        if rolling && state.travel.v <= 0.0 {
+            return Err(Error::Stopped { time, position });
+        }
+        history.record(time, &state, &geometry);
+
+        let last = geometry.position(axles - 1);
+        if left_at.is_none() && last >= length - 1e-12 * path {
+            let before = history.positions[history.positions.len() - axles - 1];
+            left_at = Some(time - h * ((last - length) / (last - before)).max(0.0));
+        }
+        if let Some(left) = left_at {
+            let end = left + settings.tail;
+            if time >= end - 1e-9 * h {
+                if time > end + 1e-9 * h {
+                    history.shorten_last(1.0 - (time - end) / h);
+                }
+                return Ok(history);
+            }
+        }
+        if n > 2 * MAX_STEPS {
+            return Err(Error::Stopped { time, position });
+        }
+        if n % POLL_EVERY == 0 && !go_on() {
+            return Err(Error::Interrupted);
+        }
+    }
+    unreachable!("the loop over steps has no end")
+}

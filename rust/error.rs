@@ -1,0 +1,115 @@
+//! What can go wrong, in one enum: bad input, a step that is too long, a solve that failed.
+
+/// Every failure of the engine. [`Error::is_input`] separates what the user can mend from numerical trouble.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A value outside what is allowed.
+    #[error("{key} = {value}: {allowed}")]
+    Input {
+        /// Name of the argument, as the user wrote it.
+        key: String,
+        /// The offending value.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// The supports leave a rigid-body motion free.
+    #[error(
+        "unstable bridge: supports = [{supports}] leave it free to {motion}; \
+         give at least one clamped end or two supports at different positions"
+    )]
+    Unstable {
+        /// The supports as given.
+        supports: String,
+        /// The rigid-body motion that nothing prevents.
+        motion: &'static str,
+    },
+    /// A time step beyond the stability limit of the chosen Newmark scheme.
+    #[error(
+        "step = {step} s: Newmark with beta = {beta} is stable only for steps up to {limit:.6e} s here \
+         (fastest coupled frequency at most {frequency:.3} Hz); shorten the step or use beta = 0.25"
+    )]
+    StepTooLong {
+        /// The step asked for [s].
+        step: f64,
+        /// Newmark's β [-].
+        beta: f64,
+        /// The longest stable step [s].
+        limit: f64,
+        /// Upper bound of the fastest coupled frequency [Hz].
+        frequency: f64,
+    },
+    /// The eigensolution failed or did not pass its own check.
+    #[error("modes: {0}")]
+    Modes(String),
+    /// A flexibility matrix that should be positive definite is not.
+    #[error("flexibility of the redundant restraints is not positive definite: {0}")]
+    Singular(String),
+    /// The contact forces or the axle positions did not settle within a step.
+    #[error("no convergence of the {what} at t = {time:.6} s (front axle at x = {position:.4} m); shorten the step")]
+    NoConvergence {
+        /// What did not settle.
+        what: &'static str,
+        /// Time [s].
+        time: f64,
+        /// Position of the front axle [m].
+        position: f64,
+    },
+    /// Under constant traction the vehicle came to rest before it had left the bridge.
+    #[error(
+        "the vehicle comes to rest at t = {time:.4} s with its front axle at x = {position:.3} m: at this speed \
+         constant traction does not carry it out of the bridge's sag; raise speed or use drive = \"constant-speed\""
+    )]
+    Stopped {
+        /// Time [s].
+        time: f64,
+        /// Position of the front axle [m].
+        position: f64,
+    },
+    /// A state that is not a finite number.
+    #[error("the response stops being finite at t = {time:.6} s (front axle at x = {position:.4} m); shorten the step")]
+    NotFinite {
+        /// Time [s].
+        time: f64,
+        /// Position of the front axle [m].
+        position: f64,
+    },
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Error {
+    /// An [`Error::Input`] from its parts.
+    pub fn input(key: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Error::Input { key: key.into(), value: value.to_string(), allowed: allowed.into() }
+    }
+
+    /// Whether the caller's input is at fault (otherwise the numerics are, or the user interrupted).
+    pub fn is_input(&self) -> bool {
+        matches!(self, Error::Input { .. } | Error::Unstable { .. } | Error::StepTooLong { .. })
+    }
+}
+
+/// `value`, if it is finite.
+pub fn finite(key: impl Into<String>, value: f64) -> Result<f64, Error> {
+    if value.is_finite() { Ok(value) } else { Err(Error::input(key, value, "must be a finite number")) }
+}
+
+/// `value`, if it is finite and greater than zero.
+pub fn positive(key: impl Into<String>, value: f64) -> Result<f64, Error> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::input(key, value, "must be finite and greater than 0"))
+    }
+}
+
+/// `value`, if it is finite and not negative.
+pub fn not_negative(key: impl Into<String>, value: f64) -> Result<f64, Error> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::input(key, value, "must be finite and 0 or more"))
+    }
+}

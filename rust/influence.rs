@@ -1,0 +1,173 @@
+//! Influence lines: each response of the bridge, at any section, to a unit load anywhere on it.
+//!
+//! By reciprocity the influence line of a response is a deflected shape of the same bridge: under a unit force for a
+//! deflection, a unit kink for a moment, a unit jump for a shear, a unit settlement for a reaction. All are exact.
+
+use crate::bridge::Bridge;
+use crate::flexibility::{Action, Flexibility, Restraint, Structure};
+use crate::line::Line;
+
+/// A kind of response. Signs: deflection down, sagging moment, shear as the sum of upward forces to the left, reactions
+/// up and clamp moments sagging, all positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Quantity {
+    /// Deflection at the sections [m].
+    Deflection,
+    /// Bending moment at the sections [N m].
+    Moment,
+    /// Shear just left of the sections [N].
+    ShearLeft,
+    /// Shear just right of the sections [N].
+    ShearRight,
+    /// Vertical reactions of the supports, on the bridge [N].
+    Reaction,
+    /// Moments of the clamped ends, on the bridge [N m].
+    ClampMoment,
+}
+
+impl Quantity {
+    /// All kinds, in the order in which responses are laid out.
+    pub const ALL: [Quantity; 6] = [
+        Quantity::Deflection,
+        Quantity::Moment,
+        Quantity::ShearLeft,
+        Quantity::ShearRight,
+        Quantity::Reaction,
+        Quantity::ClampMoment,
+    ];
+}
+
+/// Slope at a node [rad] per unit load along the bridge.
+pub fn slope(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
+    flexibility.deflected(Action::Couple(node), structure)
+}
+
+/// Deflection at a node [m] per unit load along the bridge.
+pub fn deflection(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
+    flexibility.deflected(Action::Force(node), structure)
+}
+
+/// Reaction of a restraint per unit load along the bridge: a force up [N/N] or a clamp moment, sagging [N m/N].
+pub fn reaction(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
+    let line = flexibility.deflected(Action::Settlement(restraint), structure);
+    match restraint {
+        // At the left end a sagging moment acts in the sense of positive slope, so the work changes sign.
+        Restraint::Slope(0) => line.scaled(-1.0),
+        _ => line,
+    }
+}
+
+/// Bending moment at a node [N m/N] per unit load along the bridge.
+pub fn moment(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
+    if node == 0 || node == flexibility.mesh().panels() {
+        held(flexibility, Restraint::Slope(node), structure)
+    } else {
+        flexibility.deflected(Action::Kink(node), structure)
+    }
+}
+
+/// Shear just left and just right of a node [N/N] per unit load along the bridge.
+pub fn shear(flexibility: &Flexibility, node: usize, structure: Structure) -> [Line; 2] {
+    let support = held(flexibility, Restraint::Deflection(node), structure);
+    let nothing = Line::straight(flexibility.mesh(), 0.0, 0.0);
+    if node == 0 {
+        // No force stands to the left of the left end.
+        [nothing, support]
+    } else if node == flexibility.mesh().panels() {
+        // No force stands to the right of the right end.
+        [support.scaled(-1.0), nothing]
+    } else {
+        let left = flexibility.deflected(Action::Jump(node), structure);
+        let mut right = left.clone();
+        right.add_scaled(1.0, &support);
+        [left, right]
+    }
+}
+
+/// Reaction of a restraint if the structure has it, else zero.
+fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
+    let has = flexibility.outer_restraints().contains(&restraint)
+        || (structure == Structure::Actual && flexibility.redundants().contains(&restraint));
+    if has { reaction(flexibility, restraint, structure) } else { Line::straight(flexibility.mesh(), 0.0, 0.0) }
+}
+
+/// Every response looked at: deflection, moment and both shears at the sections, reactions, clamp moments.
+#[derive(Debug, Clone)]
+pub struct Responses {
+    sections: Vec<usize>,
+    /// Vertical restraints, left to right, then the clamps.
+    restraints: [Vec<Restraint>; 2],
+    lines: Vec<Line>,
+}
+
+impl Responses {
+    /// At `sections` [m], which must be nodes of the flexibility's mesh.
+    pub fn new(flexibility: &Flexibility, bridge: &Bridge, sections: &[f64]) -> Self {
+        let mesh = flexibility.mesh();
+        let sections: Vec<usize> = sections.iter().map(|&x| mesh.node_at(x)).collect();
+        let vertical: Vec<Restraint> =
+            bridge.supports().iter().map(|s| Restraint::Deflection(mesh.node_at(s.at))).collect();
+        let clamps: Vec<Restraint> =
+            flexibility.outer_restraints().into_iter().filter(|r| matches!(r, Restraint::Slope(_))).collect();
+
+        let actual = Structure::Actual;
+        let mut lines: Vec<Line> = sections.iter().map(|&node| deflection(flexibility, node, actual)).collect();
+        lines.extend(sections.iter().map(|&node| moment(flexibility, node, actual)));
+        let (left, right): (Vec<Line>, Vec<Line>) =
+            sections.iter().map(|&node| shear(flexibility, node, actual).into()).unzip();
+        lines.extend(left);
+        lines.extend(right);
+        lines.extend(vertical.iter().chain(&clamps).map(|&r| reaction(flexibility, r, actual)));
+        Responses { sections, restraints: [vertical, clamps], lines }
+    }
+
+    /// Nodes of the sections.
+    pub fn sections(&self) -> &[usize] {
+        &self.sections
+    }
+
+    /// Number of responses.
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// Whether nothing is looked at (never so: a bridge has a support).
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// Indices of the responses of one kind, in the order of sections or of restraints.
+    pub fn range(&self, quantity: Quantity) -> std::ops::Range<usize> {
+        let n = self.sections.len();
+        let vertical = self.restraints[0].len();
+        match quantity {
+            Quantity::Deflection => 0..n,
+            Quantity::Moment => n..2 * n,
+            Quantity::ShearLeft => 2 * n..3 * n,
+            Quantity::ShearRight => 3 * n..4 * n,
+            Quantity::Reaction => 4 * n..4 * n + vertical,
+            Quantity::ClampMoment => 4 * n + vertical..self.lines.len(),
+        }
+    }
+
+    /// The influence lines.
+    pub fn lines(&self) -> &[Line] {
+        &self.lines
+    }
+
+    /// Value of influence line `response` for a load that stays at a mass station.
+    ///
+    /// A mass at a section stands between its left and its right side: for the shear on the left it is to the right.
+    pub fn at_station(&self, response: usize, node: usize) -> f64 {
+        let line = &self.lines[response];
+        let own_section =
+            |range: std::ops::Range<usize>| range.contains(&response) && self.sections[response - range.start] == node;
+        if own_section(self.range(Quantity::ShearLeft)) {
+            line.after(node)
+        } else if own_section(self.range(Quantity::ShearRight)) {
+            line.before(node)
+        } else {
+            line.at_node(node)
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What the time step computes with: one `f64`, or several samples side by side.
+
+use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// One number per sample. All operations are exact IEEE ones, element by element, so that a sample's bits depend
+/// neither on its neighbours nor on the width.
+pub trait Lane:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// One truth value per sample.
+    type Mask: Copy + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+
+    /// The same number for every sample.
+    fn splat(value: f64) -> Self;
+
+    /// self < other.
+    fn less(self, other: Self) -> Self::Mask;
+
+    /// `yes` where the mask holds, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Whether the mask holds for every sample.
+    fn all(mask: Self::Mask) -> bool;
+
+    /// Whether the mask holds for any sample.
+    fn any(mask: Self::Mask) -> bool;
+
+    /// The mask that holds for no sample.
+    fn never() -> Self::Mask {
+        Self::splat(0.0).less(Self::splat(0.0))
+    }
+
+    /// Larger of two by compare-and-select: `other` unless self is greater.
+    fn larger(self, other: Self) -> Self {
+        Self::select(other.less(self), self, other)
+    }
+
+    /// Smaller of two by compare-and-select: `other` unless self is less.
+    fn smaller(self, other: Self) -> Self {
+        Self::select(self.less(other), self, other)
+    }
+
+    /// Magnitude.
+    fn magnitude(self) -> Self {
+        Self::select(self.less(Self::splat(0.0)), -self, self)
+    }
+}
+
+impl Lane for f64 {
+    type Mask = bool;
+
+    fn splat(value: f64) -> Self {
+        value
+    }
+
+    fn less(self, other: Self) -> bool {
+        self < other
+    }
+
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+
+    fn all(mask: bool) -> bool {
+        mask
+    }
+
+    fn any(mask: bool) -> bool {
+        mask
+    }
+}

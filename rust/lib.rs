@@ -1,0 +1,34 @@
+//! Dynamic response of beam bridges to vehicles: a few modes in time, then quasi-static recovery by force summation.
+//!
+//! The files follow the data: a [`bridge`] becomes cubic [`line`]s by its [`flexibility`] and [`influence`] lines,
+//! whose [`modes`] carry the motion; a [`vehicle`] presses on it through [`contact`] forces in every [`step`], along its
+//! [`path`], for a whole [`crossing`]; [`recovery`] turns modal states into responses and [`envelope`] into extremes.
+
+pub mod error;
+
+pub mod bridge;
+pub mod line;
+
+pub mod flexibility;
+pub mod influence;
+pub mod modes;
+
+pub mod vehicle;
+
+pub mod lane;
+
+pub mod contact;
+pub mod path;
+pub mod step;
+
+pub mod crossing;
+
+pub mod recovery;
+pub mod sequence;
+
+pub mod envelope;
+
+pub mod analysis;
+
+#[cfg(feature = "python")]
+mod python;
