@@ -37,10 +37,12 @@ test: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked
 	$(PY) -m pytest
 
+# clippy runs in the dev profile: with the settings of maturin in the release
+# profile, the two would keep invalidating each other's build of PyO3.
 check: $(EXTENSION)
 	$(CARGO) fmt --check
-	$(CARGO) clippy $(PROFILE) --locked --all-targets -- -D warnings
-	PYO3_PYTHON="$(abspath $(PY))" $(CARGO) clippy $(PROFILE) --locked --all-targets --features python -- -D warnings
+	$(CARGO) clippy --locked --all-targets -- -D warnings
+	PYO3_PYTHON="$(abspath $(PY))" $(CARGO) clippy --locked --all-targets --features python -- -D warnings
 	$(PY) -m ruff check
 	$(PY) -m ruff format --check
 	$(PY) -m mypy
@@ -49,8 +51,9 @@ check: $(EXTENSION)
 bench:
 	$(CARGO) bench --locked
 
-docs:
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
+# With the feature `python` only to reuse what clippy compiled.
+docs: $(TOOLS)
+	RUSTDOCFLAGS="-D warnings" PYO3_PYTHON="$(abspath $(PY))" $(CARGO) doc --locked --no-deps --features python
 
 clean:
 	$(CARGO) clean

@@ -2,7 +2,7 @@
 
 use crate::bridge::Bridge;
 use crate::crossing::{Damping, History, ModalBridge, Settings, cross};
-use crate::envelope::{Envelope, Responded, axle_loads, survey};
+use crate::envelope::{Envelope, axle_loads, survey};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
 use crate::influence::{Quantity, Responses};
@@ -10,8 +10,8 @@ use crate::modes::Modes;
 use crate::recovery::{Recovery, Rows};
 use crate::vehicle::Vehicle;
 
-/// Most memory that kept responses may take [bytes].
-pub const MAX_RESPONSE_BYTES: usize = 2 << 30;
+/// Most memory that the histories of one quantity may take [bytes].
+pub const MAX_HISTORY_BYTES: usize = 2 << 30;
 
 /// Most sections looked at.
 pub const MAX_SECTIONS: usize = 20_000;
@@ -54,32 +54,37 @@ impl Analysis {
         Ok(Analysis { sections, flexibility, modes, model, responses, rows })
     }
 
-    /// One crossing. With `keep` the responses at every instant are kept beside their extremes.
+    /// One crossing.
     pub fn cross(
         &self,
         vehicle: &Vehicle,
         settings: &Settings,
-        keep: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Outcome, Error> {
         let history = cross(&self.model, vehicle, settings, go_on)?;
-        let bytes = 2 * size_of::<f64>() * history.len() * self.rows.len();
-        if keep && bytes > MAX_RESPONSE_BYTES {
-            return Err(Error::input(
-                "histories",
-                "true",
-                format!(
-                    "{} responses at {} instants would take {:.1} GB, more than {:.1}: use histories = false \
-                     (extremes only), fewer sections or a longer step",
-                    self.rows.len(),
-                    history.len(),
-                    bytes as f64 / 1e9,
-                    MAX_RESPONSE_BYTES as f64 / 1e9
-                ),
-            ));
+        let envelope = survey(&history, &self.rows, &self.responses, go_on)?;
+        Ok(Outcome { axle_loads: axle_loads(&history), history, envelope })
+    }
+
+    /// The responses of one quantity at every instant, dynamic and static, row by row.
+    pub fn histories(
+        &self,
+        outcome: &Outcome,
+        quantity: Quantity,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<[Vec<f64>; 2], Error> {
+        let range = self.responses.range(quantity);
+        let bytes = 2 * size_of::<f64>() * outcome.history.len() * range.len();
+        if bytes > MAX_HISTORY_BYTES {
+            let size = format!("{} positions at {} instants", range.len(), outcome.history.len());
+            let allowed = format!(
+                "histories there would take {:.1} GB, more than {:.1}: use fewer sections or a longer step",
+                bytes as f64 / 1e9,
+                MAX_HISTORY_BYTES as f64 / 1e9
+            );
+            return Err(Error::input("sections", size, allowed));
         }
-        let (envelope, responded) = survey(&history, &self.rows, &self.responses, keep, go_on)?;
-        Ok(Outcome { axle_loads: axle_loads(&history), history, envelope, responded })
+        self.rows.histories(&outcome.history, range, go_on)
     }
 
     /// Extremes of one quantity; shears on both sides of a section count together.
@@ -101,8 +106,6 @@ pub struct Outcome {
     pub envelope: Envelope,
     /// Extremes of the axle loads.
     pub axle_loads: Envelope,
-    /// Responses at every instant, if kept.
-    pub responded: Responded,
 }
 
 fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {

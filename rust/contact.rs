@@ -48,12 +48,15 @@ impl<L: Lane> Contact<L> {
     /// The law rises with d and S ≥ 0, so the solution is unique: whichever branch its trial confirms.
     pub fn solve(&self, u: L, compliance: L, s: L) -> L {
         let one = L::splat(1.0);
-        let stick = self.tyre * (u - s) / (one + self.tyre * compliance);
-        let friction = self.initial + stick - self.suspension * s;
-        let limit = L::select(friction.less(L::splat(0.0)), -self.limit, self.limit);
-        let offset = self.tyre * (limit - self.initial) / (self.tyre + self.suspension);
-        let slide = (self.series * u + offset) / (one + self.series * compliance);
-        let p = L::select(self.limit.less(friction.magnitude()), slide, stick);
+        let mut p = self.tyre * (u - s) / (one + self.tyre * compliance);
+        let friction = self.initial + p - self.suspension * s;
+        let slips = self.limit.less(friction.magnitude());
+        if L::any(slips) {
+            // Sliding: p = k_t k_s/(k_t + k_s) (d + (±F − f₀)/k_s).
+            let limit = L::select(friction.less(L::splat(0.0)), -self.limit, self.limit);
+            let shortening = u + (limit - self.initial) / self.suspension;
+            p = L::select(slips, self.series * shortening / (one + self.series * compliance), p);
+        }
         p.larger(-self.static_load)
     }
 
@@ -87,7 +90,12 @@ pub fn solve<L: Lane>(
         let mut change = L::splat(0.0);
         for k in 0..n {
             let row = &compliance[k * n..(k + 1) * n];
-            let others = (0..n).filter(|&j| j != k).fold(u[k], |d, j| d - row[j] * p[j]);
+            let mut others = u[k];
+            for (j, (s, p)) in row.iter().zip(p.iter()).enumerate() {
+                if j != k {
+                    others = others - *s * *p;
+                }
+            }
             let next = L::select(done, p[k], contacts[k].solve(others, row[k], s[k]));
             change = change.larger((next - p[k]).magnitude());
             p[k] = next;

@@ -258,18 +258,34 @@ impl History {
 
     fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
         self.time.push(time);
-        for (k, static_load) in self.static_loads.iter().enumerate() {
+        for (k, increment) in state.increments.iter().enumerate() {
             self.positions.push(geometry.position(k));
-            self.loads.push(static_load + state.increments[k]);
+            self.loads.push(self.static_loads[k] + increment);
+            self.shortenings.push(state.shortenings[k]);
+            self.friction.push(state.friction[k]);
         }
-        self.a.extend(state.modes.iter().map(|c| c.x));
-        self.a_dot.extend(state.modes.iter().map(|c| c.v));
-        self.a_ddot.extend(state.modes.iter().map(|c| c.a));
+        for mode in &state.modes {
+            self.a.push(mode.x);
+            self.a_dot.push(mode.v);
+            self.a_ddot.push(mode.a);
+        }
         for c in [state.heave, state.pitch, state.travel] {
-            self.body.extend([c.x, c.v, c.a]);
+            self.body.push(c.x);
+            self.body.push(c.v);
+            self.body.push(c.a);
         }
-        self.shortenings.extend(&state.shortenings);
-        self.friction.extend(&state.friction);
+    }
+
+    /// Makes room for this many instants.
+    fn reserve(&mut self, instants: usize) {
+        self.time.reserve_exact(instants);
+        self.body.reserve_exact(9 * instants);
+        for column in [&mut self.positions, &mut self.loads, &mut self.shortenings, &mut self.friction] {
+            column.reserve_exact(self.axles * instants);
+        }
+        for column in [&mut self.a, &mut self.a_dot, &mut self.a_ddot] {
+            column.reserve_exact(self.modes * instants);
+        }
     }
 
     /// Cuts the last step short: its end becomes the state this fraction of the way through it.
@@ -346,6 +362,7 @@ fn march(
     let axles = static_loads.len();
     let length = model.shapes.mesh().length();
     let mut history = History { axles, modes: model.omega.len(), step: h, static_loads, ..History::default() };
+    history.reserve(((path / settings.speed + settings.tail) / h) as usize + 16);
     history.record(0.0, &state, &geometry);
     let mut left_at = None;
     for n in 1.. {

@@ -3,7 +3,7 @@
 use crate::crossing::History;
 use crate::error::Error;
 use crate::influence::Responses;
-use crate::recovery::{Instant, Place, Rows};
+use crate::recovery::{Block, Instant, Packed, Place, Rows, WIDTH};
 
 /// An extreme of a response over a crossing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,13 +18,6 @@ pub struct Extreme {
     pub partner: f64,
 }
 
-impl Extreme {
-    /// Of nothing seen yet: loses against every number.
-    fn none(value: f64) -> Self {
-        Extreme { value, time: f64::NAN, position: f64::NAN, partner: f64::NAN }
-    }
-}
-
 /// Largest and smallest of every response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extremes {
@@ -34,24 +27,52 @@ pub struct Extremes {
     pub min: Vec<Extreme>,
 }
 
-impl Extremes {
-    fn new(responses: usize) -> Self {
-        Extremes {
-            max: vec![Extreme::none(f64::NEG_INFINITY); responses],
-            min: vec![Extreme::none(f64::INFINITY); responses],
+/// Largest and smallest so far of one block of responses, and the instants at which they occurred.
+///
+/// Looked at in every step, so without a branch: the number of an instant is an `f64` and chosen along with the value.
+#[derive(Debug, Clone, Copy)]
+struct Watched {
+    max: Block,
+    max_at: Block,
+    min: Block,
+    min_at: Block,
+}
+
+impl Watched {
+    const NOTHING: Self = Watched {
+        max: [f64::NEG_INFINITY; WIDTH],
+        max_at: [0.0; WIDTH],
+        min: [f64::INFINITY; WIDTH],
+        min_at: [0.0; WIDTH],
+    };
+
+    #[inline(always)]
+    fn take(&mut self, values: &Block, instant: f64) {
+        for i in 0..WIDTH {
+            let (above, below) = (values[i] > self.max[i], values[i] < self.min[i]);
+            self.max[i] = if above { values[i] } else { self.max[i] };
+            self.max_at[i] = if above { instant } else { self.max_at[i] };
+            self.min[i] = if below { values[i] } else { self.min[i] };
+            self.min_at[i] = if below { instant } else { self.min_at[i] };
         }
     }
+}
 
-    /// Takes in the responses from `first` on at one instant; of equal values the earliest stays.
-    fn take(&mut self, first: usize, values: &[f64], partners: &[f64], time: f64, position: f64) {
-        for (i, (&value, &partner)) in values.iter().zip(partners).enumerate() {
-            let r = first + i;
-            if value > self.max[r].value {
-                self.max[r] = Extreme { value, time, position, partner };
-            }
-            if value < self.min[r].value {
-                self.min[r] = Extreme { value, time, position, partner };
-            }
+impl Extremes {
+    /// Nothing seen yet: loses against every number.
+    fn none(responses: usize) -> Self {
+        let lost = |value| Extreme { value, time: f64::INFINITY, position: f64::NAN, partner: f64::NAN };
+        Extremes { max: vec![lost(f64::NEG_INFINITY); responses], min: vec![lost(f64::INFINITY); responses] }
+    }
+
+    /// Takes in one response at one instant; of equal values the earliest counts, in whatever order they come.
+    fn take(&mut self, r: usize, seen: Extreme) {
+        let (max, min) = (&mut self.max[r], &mut self.min[r]);
+        if seen.value > max.value || (seen.value == max.value && seen.time < max.time) {
+            *max = seen;
+        }
+        if seen.value < min.value || (seen.value == min.value && seen.time < min.time) {
+            *min = seen;
         }
     }
 }
@@ -65,16 +86,7 @@ pub struct Envelope {
     pub at_rest: Extremes,
 }
 
-/// Responses at every instant of a history, row by row.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Responded {
-    /// Dynamic.
-    pub dynamic: Vec<f64>,
-    /// Static.
-    pub at_rest: Vec<f64>,
-}
-
-/// Goes through a history once: extremes of all responses and, if `keep`, the responses at every instant.
+/// Extremes of all responses over a history.
 ///
 /// A moment peaks, and a shear jumps, as an axle passes the section, and where the bridge has a free end every response
 /// jumps as an axle enters or leaves. These instants are part of the extremes, from the interpolated state and on both
@@ -83,68 +95,152 @@ pub fn survey(
     history: &History,
     rows: &Rows,
     responses: &Responses,
-    keep: bool,
     go_on: &mut dyn FnMut() -> bool,
-) -> Result<(Envelope, Responded), Error> {
-    let n = rows.len();
-    let axles = history.axles;
-    let mut envelope = Envelope { dynamic: Extremes::new(n), at_rest: Extremes::new(n) };
-    let kept = if keep { n * history.len() } else { n };
-    let mut responded = Responded { dynamic: vec![0.0; kept], at_rest: vec![0.0; kept] };
-    let mut passing = Passing::new(history, rows, responses);
-    let mut places: Vec<Place> = vec![None; axles];
-    for i in 0..history.len() {
-        if i > 0 {
-            passing.between(i, &mut envelope);
-        }
-        let positions = &history.positions[i * axles..(i + 1) * axles];
-        for (place, &x) in places.iter_mut().zip(positions) {
-            *place = rows.place(x);
-        }
-        let row = if keep { i * n } else { 0 };
-        let (dynamic, at_rest) = (&mut responded.dynamic[row..row + n], &mut responded.at_rest[row..row + n]);
-        rows.evaluate(&instant(history, i, &places), dynamic, at_rest);
-        envelope.dynamic.take(0, dynamic, at_rest, history.time[i], positions[0]);
-        envelope.at_rest.take(0, at_rest, dynamic, history.time[i], positions[0]);
-        if i % 1024 == 0 && !go_on() {
+) -> Result<Envelope, Error> {
+    let mut survey = Survey {
+        history,
+        rows,
+        passing: Passing::new(history, rows, responses),
+        dynamic: Extremes::none(rows.len()),
+        at_rest: Extremes::none(rows.len()),
+        watched: vec![[Watched::NOTHING; 2]; rows.blocks()],
+        packed: Packed::default(),
+    };
+    // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
+    let arch = pulp::Arch::new();
+    for from in (0..history.len()).step_by(POLL_EVERY) {
+        let to = (from + POLL_EVERY).min(history.len());
+        arch.dispatch(GoThrough { survey: &mut survey, instants: from..to });
+        if !go_on() {
             return Err(Error::Interrupted);
         }
     }
-    if !keep {
-        responded = Responded::default();
-    }
-    Ok((envelope, responded))
+    survey.conclude();
+    Ok(Envelope { dynamic: survey.dynamic, at_rest: survey.at_rest })
 }
 
-fn instant<'a>(history: &'a History, i: usize, places: &'a [Place]) -> Instant<'a> {
-    let (m, k) = (history.modes, history.axles);
-    Instant {
-        a: &history.a[i * m..(i + 1) * m],
-        a_dot: &history.a_dot[i * m..(i + 1) * m],
-        a_ddot: &history.a_ddot[i * m..(i + 1) * m],
-        loads: &history.loads[i * k..(i + 1) * k],
-        static_loads: &history.static_loads,
-        places,
+/// Instants between two questions whether to go on.
+const POLL_EVERY: usize = 1024;
+
+struct Survey<'a> {
+    history: &'a History,
+    rows: &'a Rows,
+    passing: Passing<'a>,
+    /// From the passing of stops, in the end from all.
+    dynamic: Extremes,
+    at_rest: Extremes,
+    /// At the instants of the history, dynamic and static.
+    watched: Vec<[Watched; 2]>,
+    packed: Packed,
+}
+
+/// Some instants of a survey, compiled once for each instruction set.
+struct GoThrough<'s, 'a> {
+    survey: &'s mut Survey<'a>,
+    instants: std::ops::Range<usize>,
+}
+
+impl pulp::WithSimd for GoThrough<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        self.survey.go_through(self.instants);
+    }
+}
+
+impl Survey<'_> {
+    #[inline(always)]
+    fn go_through(&mut self, instants: std::ops::Range<usize>) {
+        let packed = self.rows.pack_history(self.history, instants.clone());
+        for (b, watched) in self.watched.iter_mut().enumerate() {
+            let [mut dynamic, mut at_rest] = *watched;
+            let mut number = instants.start as f64;
+            for now in packed.iter() {
+                let (d, s) = self.rows.block(b, now);
+                dynamic.take(&d, number);
+                at_rest.take(&s, number);
+                number += 1.0;
+            }
+            *watched = [dynamic, at_rest];
+        }
+        for instant in instants.start.max(1)..instants.end {
+            self.pass(instant);
+        }
+    }
+
+    /// Adds the extremes at the instants of the history to those at the stops.
+    fn conclude(&mut self) {
+        for r in 0..self.rows.len() {
+            let (b, i) = (r / WIDTH, r % WIDTH);
+            let [dynamic, at_rest] = self.watched[b];
+            for at in [dynamic.max_at[i], dynamic.min_at[i], at_rest.max_at[i], at_rest.min_at[i]] {
+                let instant = at as usize;
+                let packed = self.rows.pack_history(self.history, instant..instant + 1);
+                let (time, position) =
+                    (self.history.time[instant], self.history.positions[instant * self.history.axles]);
+                for now in packed.iter() {
+                    let (d, s) = self.rows.block(b, now);
+                    self.dynamic.take(r, Extreme { value: d[i], time, position, partner: s[i] });
+                    self.at_rest.take(r, Extreme { value: s[i], time, position, partner: d[i] });
+                }
+            }
+        }
+    }
+
+    /// Takes in every stop that an axle passes between instants i − 1 and i, on both sides of it.
+    fn pass(&mut self, i: usize) {
+        for axle in 0..self.history.axles {
+            while let Some((node, section, fraction)) = self.passing.next(i, axle) {
+                self.passing.state.set(self.history, i, fraction, self.rows);
+                let left = node.checked_sub(1).map(|panel| (panel, 1.0));
+                let right = (node < self.rows.mesh().panels()).then_some((node, 0.0));
+                for side in [left, right] {
+                    self.passing.state.places[axle] = side;
+                    self.stop(section);
+                }
+            }
+        }
+    }
+
+    /// Takes in the responses of a section, or all at an end of the bridge, from the interpolated state.
+    fn stop(&mut self, section: Option<usize>) {
+        let state = &self.passing.state;
+        self.packed.clear();
+        self.rows.pack(&state.instant(&self.history.static_loads), &mut self.packed);
+        let (time, position) = (state.time, state.positions[0]);
+        let sections = self.passing.sections;
+        let mut take = |now, r: usize| {
+            let (dynamic, at_rest) = self.rows.block(r / WIDTH, now);
+            let (dynamic, at_rest) = (dynamic[r % WIDTH], at_rest[r % WIDTH]);
+            self.dynamic.take(r, Extreme { value: dynamic, time, position, partner: at_rest });
+            self.at_rest.take(r, Extreme { value: at_rest, time, position, partner: dynamic });
+        };
+        for now in self.packed.iter() {
+            match section {
+                // Deflection, moment and both shears of the section itself: what else is looked at must not matter.
+                Some(s) => (0..4).for_each(|quantity| take(now, quantity * sections + s)),
+                None => (0..self.rows.len()).for_each(|r| take(now, r)),
+            }
+        }
     }
 }
 
 /// The instants at which an axle stands on a section or on an end of the bridge.
 struct Passing<'a> {
     history: &'a History,
-    rows: &'a Rows,
-    /// Nodes to stop at, with the section there if any, left to right.
-    stops: Vec<(usize, Option<usize>)>,
+    /// Stops, left to right: node, position [m], and the section there if it is not an end of the bridge.
+    stops: Vec<(usize, f64, Option<usize>)>,
     sections: usize,
     /// For every axle the next stop ahead.
     ahead: Vec<usize>,
     state: Interpolated,
-    dynamic: Vec<f64>,
-    at_rest: Vec<f64>,
 }
 
 /// A state between two rows of a history.
 #[derive(Default)]
 struct Interpolated {
+    time: f64,
     a: Vec<f64>,
     a_dot: Vec<f64>,
     a_ddot: Vec<f64>,
@@ -154,72 +250,25 @@ struct Interpolated {
 }
 
 impl<'a> Passing<'a> {
-    fn new(history: &'a History, rows: &'a Rows, responses: &Responses) -> Self {
-        let mut stops: Vec<(usize, Option<usize>)> =
-            responses.sections().iter().enumerate().map(|(s, &node)| (node, Some(s))).collect();
-        stops.extend([(0, None), (rows.mesh().panels(), None)]);
-        stops.sort_unstable();
-        let x = rows.mesh().nodes();
-        let ahead =
-            (0..history.axles).map(|k| stops.partition_point(|stop| x[stop.0] <= history.positions[k])).collect();
-        Passing {
-            history,
-            rows,
-            stops,
-            sections: responses.sections().len(),
-            ahead,
-            state: Interpolated::default(),
-            dynamic: vec![0.0; rows.len()],
-            at_rest: vec![0.0; rows.len()],
-        }
+    fn new(history: &'a History, rows: &Rows, responses: &Responses) -> Self {
+        let (x, last) = (rows.mesh().nodes(), rows.mesh().panels());
+        let inner = responses.sections().iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
+        let mut stops: Vec<_> = inner.map(|(section, &node)| (node, x[node], Some(section))).collect();
+        stops.extend([(0, x[0], None), (last, x[last], None)]);
+        stops.sort_unstable_by_key(|stop| stop.0);
+        let ahead = (0..history.axles).map(|k| stops.partition_point(|stop| stop.1 <= history.positions[k])).collect();
+        Passing { history, stops, sections: responses.sections().len(), ahead, state: Interpolated::default() }
     }
 
-    /// Takes in every stop that an axle passes between rows i − 1 and i.
-    fn between(&mut self, i: usize, envelope: &mut Envelope) {
+    /// The next stop that an axle passes between instants i − 1 and i: its node, its section, and when, as a fraction.
+    #[inline]
+    fn next(&mut self, i: usize, axle: usize) -> Option<(usize, Option<usize>, f64)> {
         let axles = self.history.axles;
-        for k in 0..axles {
-            let from = self.history.positions[(i - 1) * axles + k];
-            let to = self.history.positions[i * axles + k];
-            while let Some(&(node, section)) = self.stops.get(self.ahead[k]) {
-                let x = self.rows.mesh().nodes()[node];
-                if x > to {
-                    break;
-                }
-                self.ahead[k] += 1;
-                self.state.set(self.history, i, (x - from) / (to - from), self.rows);
-                let panel = node.checked_sub(1).map(|left| (left, 1.0));
-                let next = (node < self.rows.mesh().panels()).then_some((node, 0.0));
-                for side in [panel, next] {
-                    self.state.places[k] = side;
-                    self.take(i, (x - from) / (to - from), section, envelope);
-                }
-            }
-        }
-    }
-
-    fn take(&mut self, i: usize, fraction: f64, section: Option<usize>, envelope: &mut Envelope) {
-        let time = self.history.time[i - 1] + fraction * (self.history.time[i] - self.history.time[i - 1]);
-        let position = self.state.positions[0];
-        let now = Instant {
-            a: &self.state.a,
-            a_dot: &self.state.a_dot,
-            a_ddot: &self.state.a_ddot,
-            loads: &self.state.loads,
-            static_loads: &self.history.static_loads,
-            places: &self.state.places,
-        };
-        let n = self.rows.len();
-        let mut range = |first: usize, count: usize| {
-            let (dynamic, at_rest) = (&mut self.dynamic[..count], &mut self.at_rest[..count]);
-            self.rows.evaluate_range(&now, first, dynamic, at_rest);
-            envelope.dynamic.take(first, dynamic, at_rest, time, position);
-            envelope.at_rest.take(first, at_rest, dynamic, time, position);
-        };
-        match section {
-            // Deflection, moment and both shears of the section itself.
-            Some(s) => (0..4).for_each(|quantity| range(quantity * self.sections + s, 1)),
-            None => range(0, n),
-        }
+        let to = self.history.positions[i * axles + axle];
+        let &(node, x, section) = self.stops.get(self.ahead[axle]).filter(|stop| stop.1 <= to)?;
+        self.ahead[axle] += 1;
+        let from = self.history.positions[(i - 1) * axles + axle];
+        Some((node, section, (x - from) / (to - from)))
     }
 }
 
@@ -230,6 +279,7 @@ impl Interpolated {
             let (before, after) = (&values[(i - 1) * width..i * width], &values[i * width..(i + 1) * width]);
             out.extend(before.iter().zip(after).map(|(b, a)| b + fraction * (a - b)));
         };
+        self.time = history.time[i - 1] + fraction * (history.time[i] - history.time[i - 1]);
         mix(&mut self.a, &history.a, history.modes);
         mix(&mut self.a_dot, &history.a_dot, history.modes);
         mix(&mut self.a_ddot, &history.a_ddot, history.modes);
@@ -238,16 +288,29 @@ impl Interpolated {
         self.places.clear();
         self.places.extend(self.positions.iter().map(|&x| rows.place(x)));
     }
+
+    fn instant<'a>(&'a self, static_loads: &'a [f64]) -> Instant<'a> {
+        Instant {
+            a: &self.a,
+            a_dot: &self.a_dot,
+            a_ddot: &self.a_ddot,
+            loads: &self.loads,
+            static_loads,
+            places: &self.places,
+        }
+    }
 }
 
 /// Extremes of the axle loads.
 pub fn axle_loads(history: &History) -> Envelope {
     let axles = history.axles;
-    let mut envelope = Envelope { dynamic: Extremes::new(axles), at_rest: Extremes::new(axles) };
+    let mut envelope = Envelope { dynamic: Extremes::none(axles), at_rest: Extremes::none(axles) };
     for (i, loads) in history.loads.chunks_exact(axles).enumerate() {
-        let position = history.positions[i * axles];
-        envelope.dynamic.take(0, loads, &history.static_loads, history.time[i], position);
-        envelope.at_rest.take(0, &history.static_loads, loads, history.time[i], position);
+        let (time, position) = (history.time[i], history.positions[i * axles]);
+        for (k, (&load, &static_load)) in loads.iter().zip(&history.static_loads).enumerate() {
+            envelope.dynamic.take(k, Extreme { value: load, time, position, partner: static_load });
+            envelope.at_rest.take(k, Extreme { value: static_load, time, position, partner: load });
+        }
     }
     envelope
 }

@@ -114,7 +114,7 @@ pub struct Rolling<'a> {
     shapes: &'a ModeShapes,
     arms: Vec<f64>,
     cg_height: f64,
-    /// Change of position [m] at which an axle counts as placed.
+    /// Change of position [m] from pass to pass at which an axle counts as placed: what remains is far less.
     tolerance: f64,
     positions: Vec<f64>,
     /// The panel of each axle, from its predicted position and held through the step, so that passes converge.
@@ -131,7 +131,7 @@ impl<'a> Rolling<'a> {
             shapes,
             arms,
             cg_height,
-            tolerance: 1e-13 * shapes.mesh.length(),
+            tolerance: 1e-11 * shapes.mesh.length(),
             positions: vec![0.0; axles],
             panels: vec![None; axles],
             values: vec![[0.0; 2]; axles * shapes.modes],

@@ -1,15 +1,18 @@
 //! The extension module `spanwise._core`: conversion between Python and the core, and nothing else.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::analysis::Analysis;
 use crate::bridge::{Bridge, Fixity};
+use crate::crossing::Damping;
 use crate::error::Error;
 use crate::flexibility::Flexibility;
 use crate::modes::Modes;
+use crate::recovery::Recovery;
 
 /// Time between two looks at whether Python wants to interrupt.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
@@ -60,15 +63,39 @@ fn fixity(name: &str, key: &str, free: bool) -> Result<Option<Fixity>, Error> {
     }
 }
 
-/// The modes of a bridge, solved when first asked for and kept.
+/// A bridge with what was last worked out for it: one crossing after another need not prepare it anew.
 struct Solved {
     bridge: Bridge,
     modes: Mutex<Option<Modes>>,
+    analysis: Mutex<Option<(Asked, Arc<Analysis>)>>,
+}
+
+/// What an analysis was asked for.
+#[derive(Clone, PartialEq)]
+struct Asked {
+    modes: usize,
+    damping: Damping,
+    sections: Option<Vec<f64>>,
+    recovery: Recovery,
 }
 
 impl Solved {
     fn new(bridge: Bridge) -> Self {
-        Solved { bridge, modes: Mutex::new(None) }
+        Solved { bridge, modes: Mutex::new(None), analysis: Mutex::new(None) }
+    }
+
+    fn analysis(&self, asked: Asked) -> Result<Arc<Analysis>, Error> {
+        let mut kept = self.analysis.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((for_what, analysis)) = kept.as_ref()
+            && *for_what == asked
+        {
+            return Ok(Arc::clone(analysis));
+        }
+        let modes = self.modes(asked.modes)?;
+        let sections = asked.sections.as_deref();
+        let analysis = Arc::new(Analysis::new(&self.bridge, modes, &asked.damping, sections, asked.recovery)?);
+        *kept = Some((asked, Arc::clone(&analysis)));
+        Ok(analysis)
     }
 
     fn modes(&self, count: usize) -> Result<Modes, Error> {
@@ -86,13 +113,14 @@ impl Solved {
 
 #[pymodule]
 mod _core {
+    use std::sync::Arc;
+
     use faer::Mat;
     use numpy::ndarray::{Array1, Array2};
     use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
     use pyo3::prelude::*;
-    use pyo3::types::PyDict;
 
-    use super::{Solved, fixity, interruptible};
+    use super::{Asked, Solved, fixity, interruptible};
     use crate::analysis::{self, Analysis};
     use crate::bridge::{Bridge, Fixity, Stations, Support};
     use crate::crossing::{Damping, Drive, Settings};
@@ -354,33 +382,98 @@ mod _core {
         }
     }
 
-    /// A crossing that has been computed.
+    /// A crossing that has been computed; its arrays are made when asked for.
     #[pyclass(frozen, module = "spanwise._core")]
     struct Crossing {
-        analysis: Analysis,
+        analysis: Arc<Analysis>,
         outcome: analysis::Outcome,
     }
 
+    const QUANTITIES: [(&str, Quantity); 6] = [
+        ("deflection", Quantity::Deflection),
+        ("moment", Quantity::Moment),
+        ("shear_left", Quantity::ShearLeft),
+        ("shear_right", Quantity::ShearRight),
+        ("reactions", Quantity::Reaction),
+        ("clamp_moments", Quantity::ClampMoment),
+    ];
+
+    fn quantity(name: &str) -> Result<Quantity, Error> {
+        QUANTITIES.iter().find(|q| q.0 == name).map(|q| q.1).ok_or_else(|| {
+            let names: Vec<&str> = QUANTITIES.iter().map(|q| q.0).collect();
+            Error::input("quantity", format!("\"{name}\""), format!("must be one of {}", names.join(", ")))
+        })
+    }
+
     impl Crossing {
-        fn envelope_of(&self, quantity: &str) -> Result<Envelope, Error> {
-            let quantity = match quantity {
-                "deflection" => Quantity::Deflection,
-                "moment" => Quantity::Moment,
-                "shear" => Quantity::ShearLeft,
-                "reactions" => Quantity::Reaction,
-                "clamp_moments" => Quantity::ClampMoment,
-                "axle_loads" => return Ok(self.outcome.axle_loads.clone()),
-                _ => {
-                    let allowed = "must be deflection, moment, shear, reactions, clamp_moments or axle_loads";
-                    return Err(Error::input("quantity", format!("\"{quantity}\""), allowed));
-                }
-            };
-            Ok(self.analysis.envelope_of(&self.outcome, quantity))
+        fn envelope_of(&self, name: &str) -> Result<Envelope, Error> {
+            match name {
+                "axle_loads" => Ok(self.outcome.axle_loads.clone()),
+                "shear" => Ok(self.analysis.envelope_of(&self.outcome, Quantity::ShearLeft)),
+                _ => Ok(self.analysis.envelope_of(&self.outcome, quantity(name)?)),
+            }
         }
     }
 
     #[pymethods]
     impl Crossing {
+        /// The dynamic and the static responses of a quantity at every instant.
+        fn histories<'py>(&self, py: Python<'py>, name: &str) -> PyResult<[Matrix<'py>; 2]> {
+            let quantity = quantity(name)?;
+            let width = self.analysis.responses.range(quantity).len();
+            let [dynamic, at_rest] =
+                interruptible(py, |go_on| self.analysis.histories(&self.outcome, quantity, go_on))?;
+            Ok([rows(py, dynamic, width)?, rows(py, at_rest, width)?])
+        }
+
+        /// States at every instant, by name.
+        fn states<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Matrix<'py>> {
+            let history = &self.outcome.history;
+            let (values, width) = match name {
+                "time" => (&history.time, 1),
+                "positions" => (&history.positions, history.axles),
+                "axle_loads" => (&history.loads, history.axles),
+                "coordinates" => (&history.a, history.modes),
+                "velocities" => (&history.a_dot, history.modes),
+                "accelerations" => (&history.a_ddot, history.modes),
+                "body" => (&history.body, 9),
+                "suspension_shortenings" => (&history.shortenings, history.axles),
+                "friction" => (&history.friction, history.axles),
+                _ => return Err(Error::input("states", format!("\"{name}\""), "no such state").into()),
+            };
+            rows(py, values.clone(), width)
+        }
+
+        #[getter]
+        fn sections<'py>(&self, py: Python<'py>) -> Vector<'py> {
+            self.analysis.sections.clone().into_pyarray(py)
+        }
+
+        #[getter]
+        fn omega<'py>(&self, py: Python<'py>) -> Vector<'py> {
+            self.analysis.modes.omega.clone().into_pyarray(py)
+        }
+
+        #[getter]
+        fn static_loads<'py>(&self, py: Python<'py>) -> Vector<'py> {
+            self.outcome.history.static_loads.clone().into_pyarray(py)
+        }
+
+        #[getter]
+        fn step(&self) -> f64 {
+            self.outcome.history.step
+        }
+
+        #[getter]
+        fn steps(&self) -> usize {
+            self.outcome.history.len() - 1
+        }
+
+        #[getter]
+        fn final_speed(&self) -> f64 {
+            self.outcome.history.final_speed()
+        }
+
         /// Extremes of a quantity: columns value, time, front-axle position and partner for each of the dynamic largest,
         /// dynamic smallest, static largest and static smallest.
         fn envelope<'py>(&self, py: Python<'py>, quantity: &str) -> PyResult<[Matrix<'py>; 4]> {
@@ -432,10 +525,10 @@ mod _core {
         }
     }
 
-    /// Computes one crossing: the result, and its arrays by name.
+    /// Computes one crossing.
     #[pyfunction]
     #[pyo3(signature = (bridge, vehicle, *, speed, drive, modes, damping, damping_matrix, beta, step, approach, tail, gravity,
-                        sections, recovery, histories))]
+                        sections, recovery))]
     #[allow(clippy::too_many_arguments)] // one per setting that Python names
     fn cross<'py>(
         py: Python<'py>,
@@ -453,8 +546,7 @@ mod _core {
         gravity: f64,
         sections: Option<Vec<f64>>,
         recovery: &str,
-        histories: bool,
-    ) -> PyResult<(Crossing, Bound<'py, PyDict>)> {
+    ) -> PyResult<Crossing> {
         let drive = match drive {
             "constant-speed" => Drive::ConstantSpeed,
             "constant-traction" => Drive::ConstantTraction,
@@ -480,50 +572,11 @@ mod _core {
             }
         };
         let settings = Settings { speed, drive, beta, step, approach, tail, gravity };
-        let (analysis, mut outcome) = interruptible(py, |go_on| {
-            let modes = bridge.0.modes(modes)?;
-            let analysis = Analysis::new(&bridge.0.bridge, modes, &damping, sections.as_deref(), recovery)?;
-            let outcome = analysis.cross(&vehicle.0, &settings, histories, go_on)?;
+        let (analysis, outcome) = interruptible(py, |go_on| {
+            let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery })?;
+            let outcome = analysis.cross(&vehicle.0, &settings, go_on)?;
             Ok((analysis, outcome))
         })?;
-
-        let arrays = PyDict::new(py);
-        let history = std::mem::take(&mut outcome.history);
-        let responded = std::mem::take(&mut outcome.responded);
-        arrays.set_item("final_speed", history.final_speed())?;
-        arrays.set_item("step", history.step)?;
-        arrays.set_item("omega", analysis.modes.omega.clone().into_pyarray(py))?;
-        arrays.set_item("sections", analysis.sections.clone().into_pyarray(py))?;
-        arrays.set_item("static_loads", history.static_loads.into_pyarray(py))?;
-        arrays.set_item("time", history.time.into_pyarray(py))?;
-        for (name, values, width) in [
-            ("positions", history.positions, history.axles),
-            ("axle_loads", history.loads, history.axles),
-            ("a", history.a, history.modes),
-            ("a_dot", history.a_dot, history.modes),
-            ("a_ddot", history.a_ddot, history.modes),
-            ("body", history.body, 9),
-            ("suspension_shortenings", history.shortenings, history.axles),
-            ("friction", history.friction, history.axles),
-            ("dynamic", responded.dynamic, analysis.rows.len()),
-            ("static", responded.at_rest, analysis.rows.len()),
-        ] {
-            arrays.set_item(name, rows(py, values, width)?)?;
-        }
-        let ranges = PyDict::new(py);
-        for quantity in Quantity::ALL {
-            let name = match quantity {
-                Quantity::Deflection => "deflection",
-                Quantity::Moment => "moment",
-                Quantity::ShearLeft => "shear_left",
-                Quantity::ShearRight => "shear_right",
-                Quantity::Reaction => "reactions",
-                Quantity::ClampMoment => "clamp_moments",
-            };
-            let range = analysis.responses.range(quantity);
-            ranges.set_item(name, (range.start, range.end))?;
-        }
-        arrays.set_item("ranges", ranges)?;
-        Ok((Crossing { analysis, outcome }, arrays))
+        Ok(Crossing { analysis, outcome })
     }
 }

@@ -4,10 +4,13 @@
 //! R = ρ·A + Σ g(x_k) P_k, with ρ_m the response to the static loads MΦΩ² of mode m and
 //! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::sequence`], for reading and for testing.
 
+use std::ops::Range;
+
 use faer::Mat;
 
 use crate::bridge::Bridge;
-use crate::crossing::{Damping, ModalBridge};
+use crate::crossing::{Damping, History, ModalBridge};
+use crate::error::Error;
 use crate::influence::Responses;
 use crate::line::{Line, Mesh};
 use crate::modes::Modes;
@@ -43,18 +46,91 @@ pub struct Instant<'a> {
     pub places: &'a [Place],
 }
 
-/// The rows of all responses, laid out so that evaluating them runs along contiguous numbers.
+impl Packed {
+    /// Forgets all instants.
+    pub fn clear(&mut self) {
+        self.coordinates.clear();
+        self.static_coordinates.clear();
+        self.axles.clear();
+    }
+
+    /// The instants.
+    #[inline(always)]
+    pub fn iter(&self) -> impl Iterator<Item = Ready<'_>> {
+        let [width, axles] = self.width;
+        let coordinates = self.coordinates.chunks_exact(width).zip(self.static_coordinates.chunks_exact(width));
+        coordinates.zip(self.axles.chunks_exact(axles)).map(|((coordinates, static_coordinates), axles)| Ready {
+            coordinates,
+            static_coordinates,
+            axles,
+        })
+    }
+}
+
+impl<'a> Instant<'a> {
+    /// Row i of a history, its axles placed.
+    #[inline(always)]
+    pub fn of(history: &'a History, i: usize, places: &'a [Place]) -> Self {
+        let (m, k) = (history.modes, history.axles);
+        Instant {
+            a: &history.a[i * m..(i + 1) * m],
+            a_dot: &history.a_dot[i * m..(i + 1) * m],
+            a_ddot: &history.a_ddot[i * m..(i + 1) * m],
+            loads: &history.loads[i * k..(i + 1) * k],
+            static_loads: &history.static_loads,
+            places,
+        }
+    }
+}
+
+/// Responses are evaluated this many at a time, in registers.
+pub const WIDTH: usize = 8;
+
+/// One number for each of [`WIDTH`] neighbouring responses.
+pub type Block = [f64; WIDTH];
+
+/// Instants made ready for [`Rows::block`], one after another.
+#[derive(Debug, Clone, Default)]
+pub struct Packed {
+    /// Coordinates and axles of each instant.
+    width: [usize; 2],
+    /// What the factors multiply: A, or Ȧ and Ä.
+    coordinates: Vec<f64>,
+    /// Ā_st, the modal coordinates of the static loads, or zeros where the rows do not need them.
+    static_coordinates: Vec<f64>,
+    axles: Vec<Placed>,
+}
+
+/// One of the instants in [`Packed`].
+#[derive(Debug, Clone, Copy)]
+pub struct Ready<'a> {
+    coordinates: &'a [f64],
+    static_coordinates: &'a [f64],
+    axles: &'a [Placed],
+}
+
+/// An axle on the bridge or, without a load, off it.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    panel: usize,
+    fraction: f64,
+    load: f64,
+    static_load: f64,
+}
+
+/// The rows of all responses, laid out in blocks so that evaluating them runs along contiguous numbers.
 #[derive(Debug, Clone)]
 pub struct Rows {
     responses: usize,
-    modes: usize,
     mesh: Mesh,
     recovery: Recovery,
-    /// Factors of A, Ȧ and Ä, mode by mode, response by response; empty where all are zero.
-    factors: [Vec<f64>; 3],
-    /// The four coefficients of g (or IL), panel by panel, power by power, response by response.
-    lines: Vec<f64>,
-    /// φ/ω² along the bridge, for the modal coordinates Ā_st of the static loads ([KTN73] Eq. 9).
+    /// Number of coordinates that the factors multiply.
+    width: usize,
+    /// Factors of A, or of Ȧ and Ä: block by block, coordinate by coordinate.
+    factors: Vec<Block>,
+    /// The four coefficients of g (or IL), panel by panel, block by block.
+    lines: Vec<[Block; 4]>,
+    /// φ/ω² along the bridge, for Ā_st ([KTN73] Eq. 9).
     static_shapes: Vec<Line>,
 }
 
@@ -76,12 +152,13 @@ impl Rows {
         let momentum = Mat::from_fn(nodes.len(), m, |j, i| bridge.stations()[j].mass * modes.shapes[(j, i)]);
         // Static response to the inertia forces of a unit modal acceleration.
         let inertia = &influence * &momentum;
-        let by_mode = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-            (0..m).flat_map(|i| (0..n).map(move |r| (i, r))).map(|(i, r)| value(i, r)).collect()
+        let rho = |r: usize, i: usize| modes.omega[i].powi(2) * inertia[(r, i)];
+        let blocks = |width: usize, value: &dyn Fn(usize, usize) -> f64| -> Vec<Block> {
+            let pairs = (0..n.div_ceil(WIDTH)).flat_map(|b| (0..width).map(move |i| (b, i)));
+            pairs.map(|(b, i)| block(n, b, |r| value(r, i))).collect()
         };
-        let rho = |i: usize, r: usize| modes.omega[i].powi(2) * inertia[(r, i)];
-        let factors = match recovery {
-            Recovery::ForceSummation | Recovery::Superposition => [by_mode(&rho), Vec::new(), Vec::new()],
+        let (width, factors) = match recovery {
+            Recovery::ForceSummation | Recovery::Superposition => (m, blocks(m, &rho)),
             Recovery::ForceSummationByRates => {
                 // [KTN73] Eq. 6: P̃ = −(MΦÄ + CΦȦ); with ratios C is such that CΦ = MΦ diag(2ζω).
                 let damping = match damping {
@@ -90,7 +167,7 @@ impl Rows {
                         2.0 * ratios[i.min(ratios.len() - 1)] * model.omega[i] * inertia[(r, i)]
                     }),
                 };
-                [Vec::new(), by_mode(&|i, r| -damping[(r, i)]), by_mode(&|i, r| -inertia[(r, i)])]
+                (2 * m, blocks(2 * m, &|r, i| if i < m { -damping[(r, i)] } else { -inertia[(r, i - m)] }))
             }
         };
         let static_shapes: Vec<Line> = match recovery {
@@ -99,19 +176,19 @@ impl Rows {
             }
             _ => Vec::new(),
         };
-        let mut lines = vec![0.0; mesh.panels() * 4 * n];
-        for (r, influence) in responses.lines().iter().enumerate() {
+        let of_response = |(r, influence): (usize, &Line)| {
             let mut line = influence.clone();
             for (i, shape) in static_shapes.iter().enumerate() {
-                line.add_scaled(-rho(i, r), shape);
+                line.add_scaled(-rho(r, i), shape);
             }
-            for (panel, cubic) in line.cubics().iter().enumerate() {
-                for (power, c) in cubic.iter().enumerate() {
-                    lines[(panel * 4 + power) * n + r] = *c;
-                }
-            }
-        }
-        Rows { responses: n, modes: m, mesh: mesh.clone(), recovery, factors, lines, static_shapes }
+            line
+        };
+        let each: Vec<Line> = responses.lines().iter().enumerate().map(of_response).collect();
+        let lines = (0..mesh.panels())
+            .flat_map(|panel| (0..n.div_ceil(WIDTH)).map(move |b| (panel, b)))
+            .map(|(panel, b)| std::array::from_fn(|power| block(n, b, |r| each[r].cubics()[panel][power])))
+            .collect();
+        Rows { responses: n, mesh: mesh.clone(), recovery, width, factors, lines, static_shapes }
     }
 
     /// Number of responses.
@@ -124,6 +201,11 @@ impl Rows {
         self.responses == 0
     }
 
+    /// Number of blocks, the last one filled up with zeros.
+    pub fn blocks(&self) -> usize {
+        self.responses.div_ceil(WIDTH)
+    }
+
     /// The mesh on which axles are placed.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
@@ -134,51 +216,127 @@ impl Rows {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
     }
 
-    /// All responses at one instant, dynamic and static.
-    pub fn evaluate(&self, now: &Instant<'_>, dynamic: &mut [f64], at_rest: &mut [f64]) {
-        self.evaluate_range(now, 0, dynamic, at_rest);
-    }
-
-    /// The responses from `first` on, as many as the outputs hold.
-    pub fn evaluate_range(&self, now: &Instant<'_>, first: usize, dynamic: &mut [f64], at_rest: &mut [f64]) {
-        let n = self.responses;
-        let count = dynamic.len();
-        dynamic.fill(0.0);
-        at_rest.fill(0.0);
-        let add_modes = |factors: &[f64], mode: usize, coordinate: f64, out: &mut [f64]| {
-            let row = &factors[mode * n + first..][..count];
-            for (o, f) in out.iter_mut().zip(row) {
-                *o += f * coordinate;
-            }
-        };
-        for (factors, coordinates) in self.factors.iter().zip([now.a, now.a_dot, now.a_ddot]) {
-            if !factors.is_empty() {
-                for (mode, &coordinate) in coordinates.iter().enumerate() {
-                    add_modes(factors, mode, coordinate, dynamic);
-                }
+    /// Makes an instant ready and adds it to the others.
+    pub fn pack(&self, now: &Instant<'_>, packed: &mut Packed) {
+        packed.width = [self.width, now.places.len()];
+        match self.recovery {
+            Recovery::ForceSummation | Recovery::Superposition => packed.coordinates.extend_from_slice(now.a),
+            Recovery::ForceSummationByRates => {
+                packed.coordinates.extend_from_slice(now.a_dot);
+                packed.coordinates.extend_from_slice(now.a_ddot);
             }
         }
-        for (mode, shape) in self.static_shapes.iter().enumerate() {
-            let places = now.places.iter().zip(now.static_loads);
-            let coordinate = places.filter_map(|(place, load)| place.map(|(p, f)| load * shape.value(p, f))).sum();
-            add_modes(&self.factors[0], mode, coordinate, at_rest);
+        for i in 0..self.width {
+            let placed = now.places.iter().zip(now.static_loads);
+            packed.static_coordinates.push(self.static_shapes.get(i).map_or(0.0, |shape| {
+                placed.fold(0.0, |sum, (place, load)| place.map_or(sum, |(p, f)| sum + load * shape.value(p, f)))
+            }));
         }
         let weight = if self.recovery == Recovery::Superposition { 0.0 } else { 1.0 };
-        for ((place, load), static_load) in now.places.iter().zip(now.loads).zip(now.static_loads) {
-            let Some((panel, f)) = *place else { continue };
-            let load = weight * load;
-            let power = |k: usize| &self.lines[(panel * 4 + k) * n + first..][..count];
-            let [c0, c1, c2, c3] = [power(0), power(1), power(2), power(3)];
-            for r in 0..count {
-                let g = c0[r] + f * (c1[r] + f * (c2[r] + f * c3[r]));
-                dynamic[r] += g * load;
-                at_rest[r] += g * static_load;
-            }
+        for ((place, load), &static_load) in now.places.iter().zip(now.loads).zip(now.static_loads) {
+            packed.axles.push(match *place {
+                Some((panel, fraction)) => Placed { panel, fraction, load: weight * load, static_load },
+                None => Placed { panel: 0, fraction: 0.0, load: 0.0, static_load: 0.0 },
+            });
         }
     }
 
-    /// Number of modes.
-    pub fn modes(&self) -> usize {
-        self.modes
+    /// One block of responses at one instant, dynamic and static.
+    // Always inlined, so that it is compiled for the instruction set of the loop around it.
+    #[inline(always)]
+    pub fn block(&self, b: usize, now: Ready<'_>) -> (Block, Block) {
+        let (mut dynamic, mut at_rest) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let factors = &self.factors[b * self.width..(b + 1) * self.width];
+        for ((factor, a), a_static) in factors.iter().zip(now.coordinates).zip(now.static_coordinates) {
+            for i in 0..WIDTH {
+                dynamic[i] += factor[i] * a;
+                at_rest[i] += factor[i] * a_static;
+            }
+        }
+        for axle in now.axles {
+            let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
+            let f = axle.fraction;
+            for i in 0..WIDTH {
+                let g = c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]));
+                dynamic[i] += g * axle.load;
+                at_rest[i] += g * axle.static_load;
+            }
+        }
+        (dynamic, at_rest)
     }
+
+    /// Some rows of a history made ready.
+    pub fn pack_history(&self, history: &History, instants: Range<usize>) -> Packed {
+        let axles = history.axles;
+        let mut packed = Packed::default();
+        let mut places = vec![None; axles];
+        for i in instants {
+            for (place, &x) in places.iter_mut().zip(&history.positions[i * axles..(i + 1) * axles]) {
+                *place = self.place(x);
+            }
+            self.pack(&Instant::of(history, i, &places), &mut packed);
+        }
+        packed
+    }
+
+    /// The responses of a range at every instant of a history, dynamic and static, row by row.
+    pub fn histories(
+        &self,
+        history: &History,
+        range: Range<usize>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<[Vec<f64>; 2], Error> {
+        let count = range.len() * history.len();
+        let mut filling = Filling {
+            rows: self,
+            history,
+            range,
+            instants: 0..0,
+            out: [Vec::with_capacity(count), Vec::with_capacity(count)],
+        };
+        let arch = pulp::Arch::new();
+        for from in (0..history.len()).step_by(POLL_EVERY) {
+            filling.instants = from..(from + POLL_EVERY).min(history.len());
+            arch.dispatch(&mut filling);
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+        }
+        Ok(filling.out)
+    }
+}
+
+/// Instants between two questions whether to go on.
+const POLL_EVERY: usize = 1024;
+
+/// Histories being filled in, compiled once for each instruction set.
+struct Filling<'a> {
+    rows: &'a Rows,
+    history: &'a History,
+    range: Range<usize>,
+    instants: Range<usize>,
+    out: [Vec<f64>; 2],
+}
+
+impl pulp::WithSimd for &mut Filling<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let packed = self.rows.pack_history(self.history, self.instants.clone());
+        for now in packed.iter() {
+            for b in self.range.start / WIDTH..self.range.end.div_ceil(WIDTH) {
+                let (dynamic, at_rest) = self.rows.block(b, now);
+                let first = b * WIDTH;
+                let wanted = self.range.start.max(first) - first..self.range.end.min(first + WIDTH) - first;
+                self.out[0].extend_from_slice(&dynamic[wanted.clone()]);
+                self.out[1].extend_from_slice(&at_rest[wanted]);
+            }
+        }
+    }
+}
+
+/// The values of block b of n responses, zero beyond the last.
+fn block(n: usize, b: usize, value: impl Fn(usize) -> f64) -> Block {
+    std::array::from_fn(|i| if b * WIDTH + i < n { value(b * WIDTH + i) } else { 0.0 })
 }

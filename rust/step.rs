@@ -11,8 +11,8 @@ use crate::lane::Lane;
 /// Most passes in which axle positions and surge follow the corrected state; two or three are usual.
 const PASSES: usize = 50;
 
-/// Change of the surge [m/s²] at which it counts as found.
-const SURGE_SETTLED: f64 = 1e-11;
+/// Change of the surge [m/s²] from pass to pass at which it counts as found: what remains is a small fraction of it.
+const SURGE_SETTLED: f64 = 1e-8;
 
 /// Where the axles stand: mode shapes under them, from a table shared by all lanes or evaluated as the body moves.
 pub trait Geometry<L: Lane> {
@@ -158,6 +158,10 @@ impl<L: Lane> ModalSolve<L> {
     }
 }
 
+fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
+    a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
 /// What one sample brings to a step besides its state.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<L> {
@@ -190,9 +194,13 @@ pub struct Stepper<L> {
     arms: Vec<L>,
     /// Whether the vehicle rolls freely along the bridge (constant traction) instead of at a prescribed motion.
     rolling: bool,
+    /// Accelerations of the body at the axles under unit axle loads, 1/m + a_i a_j/J, by rows [1/kg].
+    body_receptance: Vec<L>,
     predicted: Vec<Coordinate<L>>,
     /// Modal accelerations without axle loads.
     free: Vec<L>,
+    /// Φ⁰, axle by axle.
+    shapes: Vec<L>,
     /// Modal accelerations under unit axle loads, axle by axle.
     receptance: Vec<L>,
     compliance: Vec<L>,
@@ -214,7 +222,10 @@ impl<L: Lane> Stepper<L> {
     ) -> Self {
         let (modes, axles) = (omega.len(), contacts.len());
         let zero = L::splat(0.0);
+        let at_axles = |a: &L, b: &L| L::splat(1.0) / body.mass + *a * *b / body.pitch_inertia;
+        let body_receptance = arms.iter().flat_map(|a| arms.iter().map(move |b| at_axles(a, b))).collect();
         Stepper {
+            body_receptance,
             newmark: Newmark {
                 h: L::splat(h),
                 half_h: L::splat(0.5 * h),
@@ -229,6 +240,7 @@ impl<L: Lane> Stepper<L> {
             rolling,
             predicted: vec![Coordinate::rest(); modes],
             free: vec![zero; modes],
+            shapes: vec![zero; modes * axles],
             receptance: vec![zero; modes * axles],
             compliance: vec![zero; axles * axles],
             offset: vec![zero; axles],
@@ -331,39 +343,44 @@ impl<L: Lane> Stepper<L> {
     fn couple(&mut self, geometry: &impl Geometry<L>, heave: L, pitch: L) {
         let (modes, axles) = (self.omega2.len(), self.contacts.len());
         let beta_h2 = self.newmark.new;
-        for k in 0..axles {
-            for m in 0..modes {
-                self.forces[m] = geometry.shape(k, m);
+        for (k, shapes) in self.shapes.chunks_exact_mut(modes).enumerate() {
+            for (m, shape) in shapes.iter_mut().enumerate() {
+                *shape = geometry.shape(k, m);
             }
-            self.modal.apply(&self.forces, &mut self.receptance[k * modes..(k + 1) * modes]);
         }
-        for k in 0..axles {
-            let mut d = heave + self.arms[k] * pitch;
-            for m in 0..modes {
-                d = d - geometry.shape(k, m) * (self.predicted[m].x + beta_h2 * self.free[m]);
+        let receptances = self.receptance.chunks_exact_mut(modes);
+        for (shapes, receptance) in self.shapes.chunks_exact(modes).zip(receptances) {
+            self.modal.apply(shapes, receptance);
+        }
+        let rows = self.compliance.chunks_exact_mut(axles).zip(self.body_receptance.chunks_exact(axles));
+        let axles = self.shapes.chunks_exact(modes).zip(&self.arms).zip(&mut self.offset).zip(rows);
+        for (((shapes, arm), offset), (compliance, body)) in axles {
+            let mut d = heave + *arm * pitch;
+            for ((shape, predicted), free) in shapes.iter().zip(&self.predicted).zip(&self.free) {
+                d = d - *shape * (predicted.x + beta_h2 * *free);
             }
-            for j in 0..axles {
-                let mut bridge = L::splat(0.0);
-                for m in 0..modes {
-                    bridge = bridge + geometry.shape(k, m) * self.receptance[j * modes + m];
-                }
-                d = d - beta_h2 * bridge * self.contacts[j].static_load;
-                let body = L::splat(1.0) / self.body.mass + self.arms[k] * self.arms[j] / self.body.pitch_inertia;
-                self.compliance[k * axles + j] = beta_h2 * (bridge + body);
+            let others = self.receptance.chunks_exact(modes).zip(&self.contacts);
+            for (((receptance, contact), body), compliance) in others.zip(body).zip(compliance) {
+                let bridge = dot(shapes, receptance);
+                d = d - beta_h2 * bridge * contact.static_load;
+                *compliance = beta_h2 * (bridge + *body);
             }
-            self.offset[k] = d;
+            *offset = d;
         }
     }
 
-    fn move_bridge(&self, state: &mut State<L>) {
+    fn move_bridge(&mut self, state: &mut State<L>) {
         let modes = self.omega2.len();
-        for (m, mode) in state.modes.iter_mut().enumerate() {
-            let mut a = self.free[m];
-            for (k, contact) in self.contacts.iter().enumerate() {
-                let load = contact.static_load + state.increments[k];
-                a = a + self.receptance[k * modes + m] * load;
+        self.forces.copy_from_slice(&self.free);
+        let loads = self.contacts.iter().zip(&state.increments);
+        for (receptance, (contact, increment)) in self.receptance.chunks_exact(modes).zip(loads) {
+            let load = contact.static_load + *increment;
+            for (a, r) in self.forces.iter_mut().zip(receptance) {
+                *a = *a + *r * load;
             }
-            *mode = self.newmark.correct(self.predicted[m], a);
+        }
+        for ((mode, predicted), a) in state.modes.iter_mut().zip(&self.predicted).zip(&self.forces) {
+            *mode = self.newmark.correct(*predicted, *a);
         }
     }
 
@@ -371,10 +388,8 @@ impl<L: Lane> Stepper<L> {
     fn surge(&self, state: &State<L>, geometry: &impl Geometry<L>) -> L {
         let mut force = L::splat(0.0);
         for (k, contact) in self.contacts.iter().enumerate() {
-            let mut slope = L::splat(0.0);
-            for (m, mode) in state.modes.iter().enumerate() {
-                slope = slope + geometry.slope(k, m) * mode.x;
-            }
+            let modes = state.modes.iter().enumerate();
+            let slope = modes.fold(L::splat(0.0), |sum, (m, mode)| sum + geometry.slope(k, m) * mode.x);
             force = force + (contact.static_load + state.increments[k]) * slope;
         }
         force / self.body.mass

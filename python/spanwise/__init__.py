@@ -1,8 +1,9 @@
-"""What vehicles do to bridges: dynamic response of beam bridges by a few modes and force summation."""
+"""What vehicles do to bridges: dynamic response by a few modes and force summation."""
 
 from spanwise import vehicles
 from spanwise._core import __version__
 from spanwise.bridge import Bridge, Modes
+from spanwise.case import Case
 from spanwise.crossing import cross
 from spanwise.run import Envelope, Extremes, Run
 from spanwise.table import ImpactFactors
@@ -11,6 +12,7 @@ from spanwise.vehicles import Axle, Vehicle
 __all__ = [
     "Axle",
     "Bridge",
+    "Case",
     "Envelope",
     "Extremes",
     "ImpactFactors",

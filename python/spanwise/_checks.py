@@ -2,57 +2,114 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from numbers import Integral, Real
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeGuard
+
+import numpy as np
+from numpy.typing import NDArray
 
 Numbers: TypeAlias = float | Iterable[float]
+
+#: Longest text of an offending value in a message.
+_SHOWN = 80
+
+
+def shown(value: object) -> str:
+    """The value as text on one line, cut where it is long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def number(key: str, value: object) -> float:
     """One real number as a float."""
-    if isinstance(value, Real) and not isinstance(value, bool):
+    value = _unwrapped(value)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ValueError(f"{key} = {shown(value)}: must be a number")
+    try:
         return float(value)
-    raise ValueError(f"{key} = {value!r}: must be a number")
+    except OverflowError:
+        raise ValueError(f"{key} = {shown(value)}: is too large") from None
 
 
 def numbers(key: str, value: object) -> list[float]:
     """One real number or several, as a list of floats."""
-    if isinstance(value, Real) and not isinstance(value, bool):
-        return [float(value)]
-    if isinstance(value, Iterable) and not isinstance(value, str | bytes | dict):
+    value = _unwrapped(value)
+    if isinstance(value, Real):
+        return [number(key, value)]
+    if _is_list(value):
         return [number(f"{key}[{i}]", each) for i, each in enumerate(value)]
-    raise ValueError(f"{key} = {value!r}: must be a number or a list of numbers")
+    raise ValueError(f"{key} = {shown(value)}: must be a number or a list of numbers")
 
 
 def count(key: str, value: object) -> int:
     """One whole number that is not negative."""
-    if isinstance(value, Integral) and not isinstance(value, bool) and value >= 0:
-        return int(value)
-    raise ValueError(f"{key} = {value!r}: must be a whole number, 0 or more")
+    value = _unwrapped(value)
+    if isinstance(value, bool) or not isinstance(value, Integral):
+        raise ValueError(f"{key} = {shown(value)}: must be a whole number")
+    whole = int(value)
+    if whole < 0:
+        raise ValueError(f"{key} = {shown(value)}: must not be negative")
+    if whole > sys.maxsize:
+        raise ValueError(f"{key} = {shown(value)}: is too large")
+    return whole
 
 
 def counts(key: str, value: object) -> list[int]:
     """One whole number or several, as a list."""
-    if isinstance(value, Iterable) and not isinstance(value, str | bytes | dict):
+    value = _unwrapped(value)
+    if _is_list(value):
         return [count(f"{key}[{i}]", each) for i, each in enumerate(value)]
     return [count(key, value)]
 
 
-def word(key: str, value: object) -> str:
-    """A piece of text."""
+def flag(key: str, value: object) -> bool:
+    """True or false."""
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    raise ValueError(f"{key} = {shown(value)}: must be true or false")
+
+
+def word(key: str, value: object, *options: str) -> str:
+    """A piece of text; whether it is one of the options is left to who reads it."""
     if isinstance(value, str):
         return value
-    raise ValueError(f"{key} = {value!r}: must be text")
+    allowed = " or ".join(filter(None, (", ".join(options[:-1]), *options[-1:]))) or "text"
+    raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
 
 
 def pairs(key: str, value: object) -> list[tuple[object, object]]:
     """A list of pairs."""
-    if isinstance(value, Iterable) and not isinstance(value, str | bytes | dict):
+    if _is_list(value):
         found = []
         for i, each in enumerate(value):
-            if not isinstance(each, list | tuple) or len(each) != 2:
-                raise ValueError(f"{key}[{i}] = {each!r}: must be a pair")
+            if not isinstance(each, list | tuple | np.ndarray) or len(each) != 2:
+                raise ValueError(f"{key}[{i}] = {shown(each)}: must be a pair")
             found.append((each[0], each[1]))
         return found
-    raise ValueError(f"{key} = {value!r}: must be a list of pairs")
+    raise ValueError(f"{key} = {shown(value)}: must be a list of pairs")
+
+
+def array(key: str, value: object) -> NDArray[np.float64]:
+    """Finite real numbers as an array of any shape."""
+    try:
+        values = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        values = np.array(None)
+    if values.dtype.kind not in "iuf":
+        raise ValueError(f"{key} = {shown(value)}: must be a number or an array of numbers")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{key} = {shown(value)}: must be finite")
+    return values.astype(np.float64)
+
+
+def _is_list(value: object) -> TypeGuard[Iterable[object]]:
+    text_or_unordered = (str, bytes, Mapping, AbstractSet)
+    return isinstance(value, Iterable) and not isinstance(value, text_or_unordered)
+
+
+def _unwrapped(value: object) -> Any:
+    """The number in an array without dimensions."""
+    return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import Numbers, count, counts, number, numbers, pairs, word
+from spanwise._checks import Numbers, array, count, counts, number, numbers, pairs, word
 
 if TYPE_CHECKING:
     from spanwise.plotting import BridgePlot
@@ -107,12 +107,16 @@ class Bridge:
             raise ValueError("a bridge needs either spans, or length and supports")
         if spans is not None and (length is not None or supports is not None):
             key = "length" if length is not None else "supports"
-            raise ValueError(f"{key}: not used with spans; give either spans, or length and supports")
+            raise ValueError(
+                f"{key}: not used with spans; give either spans, or length and supports"
+            )
         if stations is not None and stations_per_span is not None:
             raise ValueError("stations: not used with stations_per_span; give one of the two")
         flexural_rigidity = numbers("EI", EI)
         masses = numbers("mass", mass)
-        per_span = [10] if stations_per_span is None else counts("stations_per_span", stations_per_span)
+        per_span = (
+            [10] if stations_per_span is None else counts("stations_per_span", stations_per_span)
+        )
         at = None if stations is None else numbers("stations", stations)
         points = [
             (number(f"point_masses[{i}] position", x), number(f"point_masses[{i}] mass", m))
@@ -180,7 +184,7 @@ class Bridge:
         return self._core.masses
 
     def default_sections(self) -> Array:
-        """Sections looked at by default [m]: mass stations, supports, tenth points of every span."""
+        """Sections looked at by default [m]: mass stations, supports, tenths of every span."""
         return self._core.default_sections()
 
     def modes(self, count: int) -> Modes:
@@ -198,7 +202,7 @@ class Bridge:
 
     def mode_shapes(self, count: int, x: ArrayLike) -> Array:
         """The lowest `count` mode shapes at x [m], shape (x, modes), exact between stations."""
-        *_, along = self._core.modes(_modes(count), np.atleast_1d(np.asarray(x, dtype=np.float64)))
+        *_, along = self._core.modes(_modes(count), array("x", x).ravel())
         assert along is not None
         return along
 
@@ -213,7 +217,7 @@ class Bridge:
         ----------
         .. [1] Kishan and Traill-Nash, IABSE Publications 33 (1973), section 2.3.
         """
-        return self._core.flexibility(structure)
+        return self._core.flexibility(word("structure", structure, *get_args(Structure)))
 
     def redundant_stiffness(self) -> Array:
         """K^R [N/m]: forces at the intermediate redundant supports for unit deflections there."""
@@ -249,9 +253,13 @@ class Bridge:
         ndarray, shape of x
             Response per newton [m, rad, N m or N].
         """
-        where = np.asarray(x, dtype=np.float64)
-        flat = np.atleast_1d(where).ravel()
-        line = self._core.influence_line(quantity, number("at", at), flat, structure)
+        where = array("x", x)
+        line = self._core.influence_line(
+            word("quantity", quantity, *get_args(Quantity)),
+            number("at", at),
+            where.ravel(),
+            word("structure", structure, *get_args(Structure)),
+        )
         return line.reshape(where.shape)
 
     @property

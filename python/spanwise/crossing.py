@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import count, number, numbers
+from spanwise._checks import array, count, flag, number, numbers, shown, word
 from spanwise.bridge import Bridge
 from spanwise.run import Run
 from spanwise.vehicles import GRAVITY, Vehicle
@@ -66,9 +66,9 @@ def cross(
     sections : sequence of float, optional
         Where to look [m], ascending. By default mass stations, supports and tenth points.
     recovery : {"force-summation", "force-summation-by-rates", "superposition"}, optional
-        How responses follow from the included modes: by force summation with the inertia and damping
-        forces from the coordinates (Eq. 11 of [1]_) or from their rates (Eq. 6), or by plain
-        superposition of the modes (Eq. 2).
+        How responses follow from the included modes: by force summation with the inertia and
+        damping forces from the coordinates (Eq. 11 of [1]_) or from their rates (Eq. 6), or by
+        plain superposition of the modes (Eq. 2).
     step : float, optional
         Longest time step [s]. By default a twentieth of the shortest coupled period or the time in
         which the vehicle passes a hundredth of the narrowest panel, whichever is less.
@@ -107,6 +107,12 @@ def cross(
         spans = len(bridge.span_bounds) - 1
         modes = min(len(bridge.stations), max(3, 2 * spans))
     ratios, matrix = _damping(damping)
+    drive_word = word("drive", drive, *get_args(Drive))
+    recovery_word = word("recovery", recovery, *get_args(Recovery))
+    if not 0.0 <= number("mask", mask) < 1.0:
+        raise ValueError(
+            f"mask = {mask!r}: must be a fraction of the largest static value, from 0 to below 1"
+        )
     settings: dict[str, object] = {
         "speed": number("speed", speed),
         "modes": count("modes", modes),
@@ -123,7 +129,7 @@ def cross(
         bridge._core,
         vehicle._core,
         speed=number("speed", speed),
-        drive=drive,
+        drive=drive_word,
         modes=count("modes", modes),
         damping=ratios,
         damping_matrix=matrix,
@@ -133,22 +139,23 @@ def cross(
         tail=number("tail", tail),
         gravity=number("gravity", gravity),
         sections=None if sections is None else numbers("sections", sections),
-        recovery=recovery,
-        histories=bool(histories),
+        recovery=recovery_word,
+        histories=flag("histories", histories),
     )
     settings["step"] = arrays["step"]
     return Run(bridge, vehicle, settings, core, arrays)
 
 
-def _damping(damping: ArrayLike) -> tuple[list[float], np.ndarray | None]:
+def _damping(damping: ArrayLike) -> tuple[list[float], NDArray[np.float64] | None]:
+    """The ratios, or the matrix."""
     try:
-        values = np.asarray(damping, dtype=np.float64)
-    except (TypeError, ValueError):
-        values = np.empty((0, 0, 0))
-    if values.ndim <= 1:
-        return values.ravel().tolist(), None
-    if values.ndim == 2:
-        return [], values
+        dimensions = np.ndim(damping)
+    except ValueError:  # rows of different lengths
+        dimensions = 3
+    if dimensions < 2:
+        return numbers("damping", damping), None
+    if dimensions == 2:
+        return [], array("damping", damping)
     raise ValueError(
-        f"damping = {damping!r}: must be a ratio, a list of ratios or a square matrix C"
+        f"damping = {shown(damping)}: must be a ratio, a list of ratios or a square matrix C"
     )

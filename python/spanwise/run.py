@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
+from spanwise._checks import number
 from spanwise.bridge import Bridge
 from spanwise.table import ImpactFactors
 from spanwise.vehicles import Vehicle
@@ -88,16 +89,20 @@ class Responses:
     """Responses at every instant, as arrays of shape (time, section) and the like.
 
     Attributes are ``deflection`` [m], ``moment`` [N m], ``shear`` [N] with a last axis for the left
-    and the right side of each section, ``shear_left``, ``shear_right``, ``reactions`` (time, support)
-    [N] and ``clamp_moments`` (time, clamp) [N m]. Deflections are down, moments sagging, shears sums
-    of the upward forces to the left, reactions up.
+    and the right side of each section, ``shear_left``, ``shear_right``, ``reactions``
+    (time, support) [N] and ``clamp_moments`` (time, clamp) [N m]. Deflections are down, moments
+    sagging, shears sums of the upward forces to the left, reactions up.
     """
 
     def __init__(self, values: Array, ranges: Mapping[str, tuple[int, int]], what: str) -> None:
         self._values, self._ranges, self._what = values, ranges, what
 
+    @property
+    def _kept(self) -> bool:
+        return self._values.size > 0
+
     def _columns(self, first: str, last: str | None = None) -> Array:
-        if self._values.size == 0:
+        if not self._kept:
             raise ValueError(
                 f"{self._what} histories were not kept: call cross(..., histories=True)"
             )
@@ -244,9 +249,7 @@ class Run(Responses):
         self.static = Responses(arrays["static"], arrays["ranges"], "static")
         self.vehicle = VehicleMotion(
             *arrays["body"].T,
-            arrays["positions"],
-            arrays["suspension_shortenings"],
-            arrays["friction"],
+            *(arrays[name] for name in ("positions", "suspension_shortenings", "friction")),
         )
         self.modal = ModalMotion(arrays["a"], arrays["a_dot"], arrays["a_ddot"])
         self.final_speed: float = arrays["final_speed"]
@@ -254,7 +257,8 @@ class Run(Responses):
 
     def __repr__(self) -> str:
         return (
-            f"Run({len(self.frequencies)} modes, {self.steps} steps of {self.settings['step']:.4g} s, "
+            f"Run({len(self.frequencies)} modes, "
+            f"{self.steps} steps of {self.settings['step']:.4g} s, "
             f"{len(self.sections)} sections, recovery by {self.settings['recovery']})"
         )
 
@@ -294,9 +298,9 @@ class Run(Responses):
         Parameters
         ----------
         ratio : {"extremes", "at-dynamic-extreme", "at-static-extreme"}, optional
-            Dynamic extreme by static extreme, which may occur at different times; dynamic extreme by
-            the static value at that time; dynamic value at the time of the static extreme by that
-            extreme.
+            Dynamic extreme by static extreme, which may occur at different times; dynamic extreme
+            by the static value at that time; dynamic value at the time of the static extreme by
+            that extreme.
         mask : float, optional
             Give none where the static value is at most this fraction of the largest along the
             bridge; by default as the run was told.
@@ -306,7 +310,7 @@ class Run(Responses):
         ImpactFactors
             NaN where masked.
         """
-        masked_below = float(self.settings["mask"] if mask is None else mask)  # type: ignore[arg-type]
+        masked_below = number("mask", self.settings["mask"] if mask is None else mask)
 
         def factors(quantity: Quantity, sense: str) -> Array:
             return self._core.impact_factors(quantity, sense, ratio, masked_below)
@@ -327,9 +331,11 @@ class Run(Responses):
     def to_dict(self) -> dict[str, Any]:
         """The results as plain lists and numbers, ``None`` where an impact factor is masked.
 
-        Keys: ``sections``, ``supports`` [m], ``frequencies`` [Hz]; for each quantity the lists
-        ``max``, ``min``, ``static_max``, ``static_min`` with ``..._time`` [s] and ``..._position``
-        [m] of each; ``impact_factors``; ``final_speed`` [m/s]; ``steps``; ``settings``; ``version``.
+        Keys: ``version``; ``sections``, ``supports`` [m], ``frequencies`` [Hz]; for each quantity
+        the lists ``max``, ``min``, ``static_max``, ``static_min``, each with its ``..._time`` [s],
+        ``..._position`` [m] and ``..._partner`` (see `Extremes`); ``impact_factors``;
+        ``final_speed`` [m/s]; ``steps``; ``settings``, of which ``bridge``, ``vehicle`` and
+        ``crossing`` are the arguments that compute the run again.
         """
         from spanwise.report import as_dict
 

@@ -62,13 +62,14 @@ class ImpactFactors:
     def __str__(self) -> str:
         lines = ["  x [m]" + "".join(f"{name:>12}" for name in COLUMNS)]
         for x, *factors in zip(self.sections, *self._columns(), strict=True):
-            lines.append(f"{x:7.3f}" + "".join(f"{_text(f):>12}" for f in factors))
+            lines.append(f"{x:7.3f}" + "".join(f"{factor_text(f):>12}" for f in factors))
         lines += ["", "support [m]    reaction"]
         lines += [
-            f"{x:11.3f}{_text(f):>12}" for x, f in zip(self.supports, self.reactions, strict=True)
+            f"{x:11.3f}{factor_text(f):>12}"
+            for x, f in zip(self.supports, self.reactions, strict=True)
         ]
         lines += ["", "axle           load"]
-        lines += [f"{k:4d}{_text(f):>15}" for k, f in enumerate(self.axle_loads, 1)]
+        lines += [f"{k:4d}{factor_text(f):>15}" for k, f in enumerate(self.axle_loads, 1)]
         lines += ["", self._note()]
         return "\n".join(lines)
 
@@ -79,12 +80,12 @@ class ImpactFactors:
         rows = "".join(
             "<tr>"
             + f"<td>{x:.3f}</td>"
-            + "".join(f"<td>{_text(f)}</td>" for f in factors)
+            + "".join(f"<td>{factor_text(f)}</td>" for f in factors)
             + "</tr>"
             for x, *factors in zip(self.sections, *self._columns(), strict=True)
         )
         reactions = "".join(
-            f"<tr><td>{x:.3f}</td><td>{_text(f)}</td></tr>"
+            f"<tr><td>{x:.3f}</td><td>{factor_text(f)}</td></tr>"
             for x, f in zip(self.supports, self.reactions, strict=True)
         )
         return (
@@ -117,5 +118,5 @@ class ImpactFactors:
         )
 
 
-def _text(factor: float) -> str:
+def factor_text(factor: float) -> str:
     return "-" if np.isnan(factor) else f"{factor:.3f}"

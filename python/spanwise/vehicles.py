@@ -1,4 +1,4 @@
-"""Vehicles: a rigid body on massless axles whose suspensions rub, and a catalogue of published ones."""
+"""Vehicles: a rigid body on massless axles whose suspensions rub, and some published ones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import number
+from spanwise._checks import flag, number, shown
 
 if TYPE_CHECKING:
     from spanwise.plotting import VehiclePlot
@@ -23,7 +23,7 @@ GRAVITY: Final = 9.80665
 
 @dataclass(frozen=True, kw_only=True)
 class Axle:
-    """A massless axle: a tyre spring in series with a suspension spring that Coulomb friction bridges.
+    """A massless axle: a tyre spring in series with a suspension that Coulomb friction bridges.
 
     Parameters
     ----------
@@ -80,11 +80,13 @@ class Vehicle:
     cg_height: float = 0.0
 
     def __post_init__(self) -> None:
+        if not isinstance(self.axles, list | tuple):
+            raise ValueError(f"axles = {shown(self.axles)}: must be a list of Axle")
         object.__setattr__(self, "axles", tuple(self.axles))
         rows = []
         for k, axle in enumerate(self.axles):
             if not isinstance(axle, Axle):
-                raise ValueError(f"axles[{k}] = {axle!r}: must be an Axle")
+                raise ValueError(f"axles[{k}] = {shown(axle)}: must be an Axle")
             fields = (
                 "position",
                 "tyre_stiffness",
@@ -129,13 +131,13 @@ class Vehicle:
             Whether friction holds the suspensions, so that the tyres alone are springs, or they
             slide.
         """
-        return self._core.frequencies(locked)
+        return self._core.frequencies(flag("locked", locked))
 
     def with_initial_friction(self, *friction: float) -> Vehicle:
-        """The same vehicle with these friction forces in the static state [N], one for each axle."""
+        """The same vehicle with these friction forces in the static state [N], one by axle."""
         if len(friction) != len(self.axles):
             raise ValueError(
-                f"initial_friction = {friction!r}: give one force for each of the "
+                f"initial_friction = {shown(friction)}: give one force for each of the "
                 f"{len(self.axles)} axles"
             )
         axles = (
@@ -155,10 +157,10 @@ class Vehicle:
 def kishan_1973() -> Vehicle:
     """The two-axle vehicle of Kishan and Traill-Nash (1973), section 4.
 
-    32 040 lb (142.5 kN) on each axle, 14 ft (4.267 m) apart, pitching inertia 38 500 slug ft2, centre
-    of mass 6 ft above the pavement, tyres 480 000 lb/ft, suspensions 270 000 lb/ft, limiting friction
-    4 800 lb at each axle. Converted from the US units, of which the SI figures printed beside them
-    are rounded. The initial friction is not stated there; it is zero here.
+    32 040 lb (142.5 kN) on each axle, 14 ft (4.267 m) apart, pitching inertia 38 500 slug ft2,
+    centre of mass 6 ft above the pavement, tyres 480 000 lb/ft, suspensions 270 000 lb/ft, limiting
+    friction 4 800 lb at each axle. Converted from the US units, of which the SI figures printed
+    beside them are rounded. The initial friction is not stated there; it is zero here.
 
     References
     ----------

@@ -1,15 +1,19 @@
 //! Problems with known answers, shared by tests and benches.
 #![allow(dead_code)] // every test and bench takes what it needs
 
+pub mod elements;
+
+use faer::Mat;
 use spanwise::analysis::{Analysis, Outcome};
 use spanwise::bridge::{Bridge, Fixity, Stations, Support};
-use spanwise::crossing::{Damping, Settings};
+use spanwise::crossing::{Damping, Drive, Settings};
 use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::influence::Quantity;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
 use spanwise::vehicle::{Axle, Vehicle};
+use std::f64::consts::PI;
 
 /// One foot [m].
 pub const FOOT: f64 = 0.3048;
@@ -31,15 +35,100 @@ pub fn clamped(at: f64) -> Support {
 
 /// Two spans of 60 ft with three masses each ([KTN73] §4).
 pub fn kishan_bridge() -> Bridge {
+    two_spans(3)
+}
+
+/// The bridge of the example with another number of masses in each span.
+pub fn two_spans(stations_per_span: usize) -> Bridge {
     Bridge::continuous(
         &[60.0 * FOOT; 2],
         [PINNED; 2],
         &[4.698e9 * POUND * FOOT * FOOT],
         &[126.1 * SLUG / FOOT],
-        &Stations::PerSpan(vec![3]),
+        &Stations::PerSpan(vec![stations_per_span]),
         &[],
     )
     .unwrap()
+}
+
+/// One bridge for every arrangement of outer supports in Table 1 of [KTN73], with and without redundants.
+pub fn arrangements() -> Vec<(&'static str, Bridge)> {
+    let [ei, mass] = [1.9e9, 6.0e3];
+    let on = |length: f64, supports: &[Support], counts: &[usize]| {
+        Bridge::new(length, supports.to_vec(), &[ei], &[mass], &Stations::PerSpan(counts.to_vec()), &[]).unwrap()
+    };
+    let varied = Bridge::continuous(
+        &[12.0, 17.0, 14.0],
+        [CLAMPED, PINNED],
+        &[1.1e9, 2.9e9, 1.7e9],
+        &[5.0e3, 7.5e3, 6.0e3],
+        &Stations::PerSpan(vec![2, 4, 3]),
+        &[(20.0, 9.0e3)],
+    );
+    vec![
+        ("case 1: two spans of the paper", kishan_bridge()),
+        ("case 1: simple span", on(20.0, &[pinned(0.0), pinned(20.0)], &[6])),
+        ("case 2: cantilever from the left", on(9.0, &[clamped(0.0)], &[5])),
+        ("case 2: clamped-clamped", on(18.0, &[clamped(0.0), clamped(18.0)], &[6])),
+        ("case 2: three spans, clamped and pinned, EI by span", varied.unwrap()),
+        ("case 2: clamped, with an overhang", on(22.0, &[clamped(0.0), pinned(16.0)], &[4, 3])),
+        ("case 3: cantilever from the right", on(9.0, &[clamped(9.0)], &[5])),
+        ("case 3: overhang and clamp", on(22.0, &[pinned(5.0), pinned(13.0), clamped(22.0)], &[2, 3, 3])),
+        ("case 4: double overhang", on(26.0, &[pinned(5.0), pinned(20.0)], &[2, 4, 3])),
+        ("case 4: double overhang, redundant", on(34.0, &[pinned(5.0), pinned(16.0), pinned(29.0)], &[2, 3, 3, 2])),
+        ("case 5: left overhang", on(24.0, &[pinned(6.0), pinned(24.0)], &[3, 5])),
+    ]
+}
+
+/// Supports of the basic bridge: the outer ones ([KTN73] §2.3).
+pub fn outer_supports(bridge: &Bridge) -> Vec<Support> {
+    let all = bridge.supports();
+    let last = all.len() - 1;
+    all.iter().enumerate().filter(|&(i, _)| i == 0 || i == last).map(|(_, s)| *s).collect()
+}
+
+/// The bridge seen from the other side.
+pub fn mirrored(bridge: &Bridge) -> Bridge {
+    let length = bridge.length();
+    let turned = |s: &Support| Support { at: length - s.at, ..*s };
+    let supports = bridge.supports().iter().rev().map(turned).collect();
+    let ei: Vec<f64> = bridge.flexural_rigidity().iter().rev().copied().collect();
+    let masses: Vec<(f64, f64)> = bridge.stations().iter().rev().map(|s| (length - s.at, s.mass)).collect();
+    Bridge::new(length, supports, &ei, &[0.0], &Stations::At(Vec::new()), &masses).unwrap()
+}
+
+/// Points all over a bridge, left to right: ends, supports, stations, and others not too near these or each other.
+///
+/// Between neighbours lies a fiftieth of the length at least: the stiffness of an element goes with its length to the
+/// power of −3, and so does the rounding of what the elements give.
+pub fn points(bridge: &Bridge) -> Vec<f64> {
+    let mut all = bridge.span_bounds().to_vec();
+    all.extend(bridge.stations().iter().map(|s| s.at));
+    add_between(&mut all, bridge.length(), 1..9);
+    all
+}
+
+/// [`points`], and as many again between them.
+pub fn more_points(bridge: &Bridge) -> Vec<f64> {
+    let mut all = points(bridge);
+    add_between(&mut all, bridge.length(), 9..60);
+    all
+}
+
+fn add_between(points: &mut Vec<f64>, length: f64, numbers: std::ops::Range<usize>) {
+    for x in numbers.map(|i| length * spread(i)) {
+        if points.iter().all(|p| (p - x).abs() >= 0.02 * length) {
+            points.push(x);
+        }
+    }
+    points.sort_by(f64::total_cmp);
+}
+
+/// A symmetric positive definite C at the mass stations that no combination of M and K gives [N s/m].
+pub fn uneven_damping(bridge: &Bridge) -> Mat<f64> {
+    let n = bridge.stations().len();
+    let root = Mat::from_fn(n, n, |i, j| if j > i { 0.0 } else { 150.0 * (0.3 + spread(1 + 7 * i + 3 * j)) });
+    &root * root.transpose()
 }
 
 /// Two axles 14 ft apart that carry 32,040 lb each ([KTN73] §4).
@@ -76,11 +165,18 @@ pub fn sprung_mass(mass: f64, stiffness: f64) -> Vehicle {
     Vehicle::new(mass, 1.0, 0.0, vec![axle]).unwrap()
 }
 
+/// The run of [KTN73] §4: 75 ft/s at constant traction, here in steps of a millisecond.
+pub fn kishan_settings() -> Settings {
+    Settings { drive: Drive::ConstantTraction, step: Some(1e-3), ..Settings::at_speed(75.0 * FOOT) }
+}
+
 /// A crossing of a bridge with everything that the tests look at.
 pub struct Run {
     pub bridge: Bridge,
     pub analysis: Analysis,
     pub outcome: Outcome,
+    /// All responses at every instant, dynamic and static, row by row.
+    pub responded: [Vec<f64>; 2],
 }
 
 /// Crosses with `modes` modes, looking at `sections` (the default ones if empty).
@@ -96,8 +192,10 @@ pub fn run(
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, modes)?;
     let sections = (!sections.is_empty()).then_some(sections);
     let analysis = Analysis::new(bridge, modes, damping, sections, recovery)?;
-    let outcome = analysis.cross(vehicle, settings, true, &mut || true)?;
-    Ok(Run { bridge: bridge.clone(), analysis, outcome })
+    let outcome = analysis.cross(vehicle, settings, &mut || true)?;
+    let all = 0..analysis.rows.len();
+    let responded = analysis.rows.histories(&outcome.history, all, &mut || true)?;
+    Ok(Run { bridge: bridge.clone(), analysis, outcome, responded })
 }
 
 pub fn undamped() -> Damping {
@@ -116,5 +214,229 @@ impl Run {
         let envelope = self.analysis.envelope_of(&self.outcome, quantity);
         let (d, s) = (&envelope.dynamic.max, &envelope.at_rest.max);
         d.iter().zip(s).map(|(d, s)| d.value / s.value).collect()
+    }
+
+    /// All dynamic responses of a kind, instant after instant, section after section.
+    pub fn history_of(&self, quantity: Quantity) -> Vec<f64> {
+        let range = self.analysis.responses.range(quantity);
+        self.rows().flat_map(|row| row.dynamic[range.clone()].to_vec()).collect()
+    }
+
+    /// The crossing instant after instant.
+    pub fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let (history, [dynamic, at_rest]) = (&self.outcome.history, &self.responded);
+        let responses = self.analysis.rows.len();
+        (0..history.len()).map(move |i| Row {
+            time: history.time[i],
+            positions: &history.positions[i * history.axles..][..history.axles],
+            loads: &history.loads[i * history.axles..][..history.axles],
+            a: &history.a[i * history.modes..][..history.modes],
+            a_dot: &history.a_dot[i * history.modes..][..history.modes],
+            a_ddot: &history.a_ddot[i * history.modes..][..history.modes],
+            dynamic: &dynamic[i * responses..][..responses],
+            at_rest: &at_rest[i * responses..][..responses],
+        })
+    }
+}
+
+/// Everything at one instant of a [`Run`].
+pub struct Row<'a> {
+    pub time: f64,
+    pub positions: &'a [f64],
+    pub loads: &'a [f64],
+    pub a: &'a [f64],
+    pub a_dot: &'a [f64],
+    pub a_ddot: &'a [f64],
+    pub dynamic: &'a [f64],
+    pub at_rest: &'a [f64],
+}
+
+pub fn largest_magnitude(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Largest difference of two lists of equal length; infinite where a NaN hides.
+pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).fold(0.0, |m, (a, b)| if (a - b).is_nan() { f64::INFINITY } else { m.max((a - b).abs()) })
+}
+
+/// Slope of the straight line through log(error) over log(size) by least squares: the observed order.
+pub fn observed_order(sizes: &[f64], errors: &[f64]) -> f64 {
+    assert_eq!(sizes.len(), errors.len());
+    let n = sizes.len() as f64;
+    let (x, y): (Vec<f64>, Vec<f64>) = sizes.iter().zip(errors).map(|(s, e)| (s.ln(), e.ln())).unzip();
+    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let up: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
+    up / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
+}
+
+/// Number `i` of a fixed sequence of numbers spread evenly over 0 to 1: the golden-ratio sequence.
+pub fn spread(i: usize) -> f64 {
+    (i as f64 * 0.618_033_988_749_894_9).fract()
+}
+
+/// A uniform bridge whose natural frequencies are known: ω = (βL)² √(EI/m) / L², with L the first span.
+pub struct Uniform {
+    pub name: &'static str,
+    pub spans: Vec<f64>,
+    pub ends: [Option<Fixity>; 2],
+    /// βL of the lowest modes (see R. D. Blevins, "Formulas for natural frequency and mode shape", tables 8-1 and 8-7).
+    pub beta_l: Vec<f64>,
+}
+
+pub fn uniform_bridges() -> Vec<Uniform> {
+    let uniform = |name, spans: usize, ends, beta_l: &[f64]| Uniform {
+        name,
+        spans: vec![UNIFORM_SPAN; spans],
+        ends,
+        beta_l: beta_l.to_vec(),
+    };
+    vec![
+        uniform("one span", 1, [PINNED; 2], &[PI, 2.0 * PI, 3.0 * PI]),
+        uniform("two spans", 2, [PINNED; 2], &[3.141_593, 3.926_602, 6.283_185, 7.068_583]),
+        uniform("three spans", 3, [PINNED; 2], &[3.141_593, 3.556_408, 4.297_530, 6.283_185]),
+        uniform("clamped-free", 1, [CLAMPED, None], &[1.875_104, 4.694_091]),
+        uniform("free-clamped", 1, [None, CLAMPED], &[1.875_104, 4.694_091]),
+        uniform("clamped-clamped", 1, [CLAMPED; 2], &[4.730_041, 7.853_205]),
+    ]
+}
+
+const UNIFORM_SPAN: f64 = 20.0;
+const UNIFORM_EI: f64 = 4e9;
+const UNIFORM_MASS: f64 = 8e3;
+
+impl Uniform {
+    pub fn bridge(&self, stations_per_span: usize) -> Bridge {
+        let stations = Stations::PerSpan(vec![stations_per_span]);
+        Bridge::continuous(&self.spans, self.ends, &[UNIFORM_EI], &[UNIFORM_MASS], &stations, &[]).unwrap()
+    }
+
+    /// βL of a circular frequency.
+    pub fn beta_l_of(&self, omega: f64) -> f64 {
+        UNIFORM_SPAN * omega.sqrt() * (UNIFORM_MASS / UNIFORM_EI).powf(0.25)
+    }
+}
+
+/// Energies of a crossing without bridge damping, instant after instant [J].
+pub struct Energies {
+    /// Of modes, body and springs, and of the weight: constant under constant traction but for friction.
+    pub total: Vec<f64>,
+    /// Strain energy of the bridge.
+    pub strain: Vec<f64>,
+}
+
+impl Run {
+    pub fn energies(&self, vehicle: &Vehicle, gravity: f64) -> Energies {
+        let history = &self.outcome.history;
+        let omega = &self.analysis.modes.omega;
+        let strain: Vec<f64> =
+            self.rows().map(|row| row.a.iter().zip(omega).map(|(a, w)| 0.5 * (a * w).powi(2)).sum()).collect();
+        let total = self.rows().enumerate().map(|(i, row)| {
+            let body = &history.body[9 * i..][..9];
+            let moving = 0.5 * row.a_dot.iter().map(|v| v * v).sum::<f64>()
+                + 0.5 * vehicle.mass() * (body[1].powi(2) + body[7].powi(2))
+                + 0.5 * vehicle.pitch_inertia() * body[4].powi(2);
+            let springs = vehicle.axles().iter().enumerate().map(|(k, axle)| {
+                // The suspension spring carries the static load less the friction there is in that state.
+                let shortened = axle.suspension_stiffness * history.shortenings[history.axles * i + k];
+                let spring = history.static_loads[k] - axle.initial_friction + shortened;
+                row.loads[k].powi(2) / (2.0 * axle.tyre_stiffness) + spring.powi(2) / (2.0 * axle.suspension_stiffness)
+            });
+            strain[i] + moving + springs.sum::<f64>() - vehicle.mass() * gravity * body[0]
+        });
+        Energies { total: total.collect(), strain }
+    }
+}
+
+/// Path of the paper's vehicle over the paper's bridge [ft]: two spans and the wheelbase. In steps that are a multiple
+/// of its number of feet, an axle enters and leaves at the end of a step (at constant speed).
+pub const KISHAN_PATH: usize = 134;
+
+/// The run of [KTN73] §4 in three modes and `count` steps.
+pub fn kishan_in_steps(vehicle: &Vehicle, drive: Drive, beta: f64, count: usize, sections: &[f64]) -> Run {
+    let step = KISHAN_PATH as f64 / 75.0 / count as f64;
+    let settings = Settings { drive, beta, step: Some(step), ..kishan_settings() };
+    run(&kishan_bridge(), vehicle, &settings, 3, &undamped(), Recovery::ForceSummation, sections).unwrap()
+}
+
+/// A constant force crossing a simply supported span: L. Frýba, "Vibration of solids and structures under moving loads",
+/// 3rd ed. (1999), ch. 1.
+pub struct MovingForce {
+    /// Speed over twice the span per first period, α = v / (2 f₁ L).
+    pub alpha: f64,
+    /// Ratio of every mode to critical.
+    pub damping: f64,
+    /// Largest dynamic deflection of midspan with the force on the span, over the static one.
+    pub amplification: f64,
+}
+
+/// Amplifications without and with 2 % of damping.
+pub fn moving_forces() -> Vec<MovingForce> {
+    let table = [
+        (0.10, [1.0965, 1.0680]),
+        (0.20, [1.0653, 1.0481]),
+        (0.30, [1.4105, 1.3811]),
+        (0.50, [1.7054, 1.6592]),
+        (0.617, [1.7317, 1.6820]),
+        (1.00, [1.5481, 1.5007]),
+    ];
+    let row = |(alpha, values): (f64, [f64; 2])| {
+        let damped = [0.0, 0.02].into_iter().zip(values);
+        damped.map(move |(damping, amplification)| MovingForce { alpha, damping, amplification })
+    };
+    table.into_iter().flat_map(row).collect()
+}
+
+impl MovingForce {
+    /// Deflection at `xi` = x/L once the force has gone the fraction `s` of the span, in the first `terms` modes,
+    /// relative to the static deflection of midspan under the force there.
+    pub fn deflection(&self, xi: f64, s: f64, terms: usize) -> f64 {
+        // Mode j answers ẅ + 2ζω ẇ + ω² w = ω² W sin Ωt, at rest at t = 0; time in units of 1/ω₁.
+        let t = PI * s / self.alpha;
+        let zeta = self.damping;
+        (1..=terms)
+            .map(|j| {
+                let j = j as f64;
+                let (omega, forcing) = (j * j, j * self.alpha);
+                let ratio = forcing / omega;
+                let response = if (zeta, ratio) == (0.0, 1.0) {
+                    0.5 * ((omega * t).sin() - omega * t * (omega * t).cos())
+                } else {
+                    let size = 1.0 / ((1.0 - ratio * ratio).powi(2) + (2.0 * zeta * ratio).powi(2));
+                    let (sine, cosine) = (size * (1.0 - ratio * ratio), -size * 2.0 * zeta * ratio);
+                    let damped = omega * (1.0 - zeta * zeta).sqrt();
+                    let (a, b) = (-cosine, (-forcing * sine - zeta * omega * cosine) / damped);
+                    let free = (-zeta * omega * t).exp() * (a * (damped * t).cos() + b * (damped * t).sin());
+                    sine * (forcing * t).sin() + cosine * (forcing * t).cos() + free
+                };
+                96.0 / PI.powi(4) / j.powi(4) * (j * PI * xi).sin() * response
+            })
+            .sum()
+    }
+}
+
+/// A sprung mass crossing a simply supported span: Y. B. Yang and J. D. Yau, "Vehicle-bridge interaction element for
+/// dynamic analysis", J. Struct. Eng. 123 (1997), with numbers as recomputed by many since.
+pub struct YangYau;
+
+impl YangYau {
+    pub const SPAN: f64 = 25.0;
+    pub const SPEED: f64 = 27.78;
+    pub const GRAVITY: f64 = 9.81;
+    /// Circular frequencies of the bridge's first mode and of the mass on its spring [rad/s].
+    pub const FREQUENCIES: [f64; 2] = [30.02, 16.66];
+    /// Included modes and largest midspan deflection [m].
+    pub const DEFLECTIONS: [(usize, f64); 2] = [(1, 2.3839e-3), (20, 2.4073e-3)];
+    /// Position of the mass at the largest deflection, as a fraction of the span.
+    pub const POSITION: f64 = 0.412;
+
+    pub fn bridge(stations: usize) -> Bridge {
+        let stations = Stations::PerSpan(vec![stations]);
+        Bridge::continuous(&[Self::SPAN], [PINNED; 2], &[2.87e9 * 2.90], &[2303.0], &stations, &[]).unwrap()
+    }
+
+    pub fn vehicle() -> Vehicle {
+        sprung_mass(5750.0, 1595e3)
     }
 }

@@ -1,0 +1,65 @@
+"""The text of a case file and the TOML tables in it, or an error that says what is wrong where."""
+
+from __future__ import annotations
+
+import re
+import stat
+import tomllib
+from pathlib import Path
+from typing import Any, Final
+
+#: Largest case file that is read [bytes].
+MAX_BYTES: Final = 2**20
+
+#: A decimal point with a digit on one side only, which TOML does not allow.
+POINT: Final = re.compile(r"(?<![\w.])(\d+\.(?!\d)|\.\d)")
+
+
+class CaseError(ValueError):
+    """A case file that cannot be used, and why."""
+
+
+def read_text(path: Path) -> str:
+    """The text of a file that may be a case; one that is not is not read."""
+    status = path.stat()
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
+        raise CaseError(f"{path}: is {kind}; a case is a TOML file")
+    if status.st_size > MAX_BYTES:
+        raise CaseError(f"{path}: has {status.st_size} bytes; a case file has at most {MAX_BYTES}")
+    with path.open("rb") as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:  # it has grown since, or did not tell its size
+        raise CaseError(f"{path}: is too large; a case file has at most {MAX_BYTES} bytes")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise CaseError(f"{path}, line {line}: is not UTF-8 text; a case is a TOML file") from error
+
+
+def parse_toml(text: str, source: str) -> dict[str, Any]:
+    """The tables of a TOML text."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(_syntax_error(str(error), text, source)) from error
+    except RecursionError as error:
+        raise CaseError(
+            f"{source}: is not valid TOML: brackets within brackets too deep"
+        ) from error
+    except ValueError as error:  # a number of thousands of digits, a date that does not exist
+        raise CaseError(f"{source}: is not valid TOML: {error}") from error
+
+
+def _syntax_error(message: str, text: str, source: str) -> str:
+    """What tomllib says, with the file and the line first and the text of the line last."""
+    where = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", message)
+    if where is None:
+        return f"{source}: is not valid TOML: {message}"
+    line = int(where[1] or text.rstrip().count("\n") + 1)
+    characters = text.split("\n")[line - 1].strip()[:80]
+    shown = "".join(each if each.isprintable() else "?" for each in characters)
+    hint = " (TOML wants digits on both sides of a point: 22.0)" if POINT.search(shown) else ""
+    said = message.replace(where[0], "")
+    return f"{source}, line {line}: is not valid TOML: {said}: {shown}{hint}"

@@ -1,0 +1,126 @@
+"""Rows of the CSV files of a run."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._values import envelope, history, places, plain, quantities
+from spanwise.run import Quantity, Run
+from spanwise.table import COLUMNS
+
+Array: TypeAlias = NDArray[np.float64]
+Row: TypeAlias = Sequence[object]
+
+UNITS: Final = {
+    "deflection": "m",
+    "moment": "N m",
+    "shear": "N",
+    "reactions": "N",
+    "clamp_moments": "N m",
+    "axle_loads": "N",
+}
+MOTION_UNITS: Final = {
+    "heave": "m",
+    "heave_velocity": "m/s",
+    "heave_acceleration": "m/s2",
+    "pitch": "rad",
+    "pitch_velocity": "rad/s",
+    "pitch_acceleration": "rad/s2",
+    "travel": "m",
+    "speed": "m/s",
+    "acceleration": "m/s2",
+    "axle_positions": "m",
+    "suspension_shortenings": "m",
+    "friction": "N",
+}
+
+#: Rows of a CSV file that are turned into text at a time.
+_CHUNK: Final = 1000
+
+
+def csv_files(run: Run) -> Iterator[tuple[str, Iterator[bytes]]]:
+    """Names and contents of the CSV files, the contents in pieces."""
+    yield "impact_factors.csv", _csv(_impact_factor_rows(run))
+    for quantity in quantities(run):
+        yield f"envelope_{quantity}.csv", _csv(_envelope_rows(run, quantity))
+    if run._kept:
+        for quantity in quantities(run):
+            rows = _history_rows(run, _labels(run, quantity), history(run, quantity))
+            yield f"history_{quantity}.csv", _csv(rows)
+        yield "history_vehicle.csv", _csv(_history_rows(run, *_motion(run)))
+
+
+def _csv(rows: Iterable[Row]) -> Iterator[bytes]:
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    for n, row in enumerate(rows, 1):
+        writer.writerow(row)
+        if n % _CHUNK == 0:
+            yield buffer.getvalue().encode()
+            buffer.seek(0)
+            buffer.truncate()
+    yield buffer.getvalue().encode()
+
+
+def _impact_factor_rows(run: Run) -> Iterator[Row]:
+    factors = run.impact_factors
+    names = (*COLUMNS, "reaction", "axle load")
+    yield ["of", "x [m]", "axle", *(f"{name} [-]" for name in names)]
+    by_section = [plain(getattr(factors, name)) for name in COLUMNS]
+    for x, *row in zip(plain(factors.sections), *by_section, strict=True):
+        yield ["section", x, None, *row, None, None]
+    none = [None] * len(COLUMNS)
+    for x, factor in zip(plain(factors.supports), plain(factors.reactions), strict=True):
+        yield ["support", x, None, *none, factor, None]
+    for k, factor in enumerate(plain(factors.axle_loads), 1):
+        yield ["axle", None, k, *none, None, factor]
+
+
+def _envelope_rows(run: Run, quantity: Quantity) -> Iterator[Row]:
+    columns = envelope(run, quantity)
+    units = {"time": "s", "position": "m"}
+    axles = quantity == "axle_loads"
+    at = [int(x) if axles else float(x) for x in places(run, quantity)]
+    yield [
+        "axle" if axles else "x [m]",
+        *(f"{name} [{units.get(name.rpartition('_')[2], UNITS[quantity])}]" for name in columns),
+    ]
+    yield from zip(at, *map(plain, columns.values()), strict=True)
+
+
+def _labels(run: Run, quantity: Quantity) -> list[str]:
+    """Column heads of a history."""
+    unit = UNITS[quantity]
+    if quantity == "axle_loads":
+        return [f"load of axle {k:.0f} [{unit}]" for k in places(run, quantity)]
+    name = {"reactions": "reaction", "clamp_moments": "clamp moment"}.get(quantity, quantity)
+    sides = (" left of", " right of") if quantity == "shear" else (" at",)
+    at = places(run, quantity).tolist()
+    return [f"{name}{side} {x!r} m [{unit}]" for x in at for side in sides]
+
+
+def _history_rows(run: Run, labels: list[str], values: Array) -> Iterator[Row]:
+    yield ["time [s]", *labels]
+    for time, row in zip(run.time, values, strict=True):
+        yield [float(time), *row.tolist()]
+
+
+def _motion(run: Run) -> tuple[list[str], Array]:
+    """Column heads and values of the motion of the vehicle."""
+    labels, columns = [], []
+    for name, unit in MOTION_UNITS.items():
+        values: Array = getattr(run.vehicle, name)
+        text = name.replace("_", " ")
+        if values.ndim == 1:
+            labels.append(f"{text} [{unit}]")
+        else:
+            each = text.removeprefix("axle ").removesuffix("s")
+            labels += [f"{each} of axle {k} [{unit}]" for k in range(1, values.shape[1] + 1)]
+        columns.append(values.reshape(len(values), -1))
+    return labels, np.hstack(columns)

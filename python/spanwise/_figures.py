@@ -1,0 +1,30 @@
+"""The figures of a run as files, PNG and SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+
+from spanwise._extras import require
+from spanwise.run import Run
+
+
+def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:
+    """Names and contents; needs the extra ``spanwise[plot]``."""
+    matplotlib = require("matplotlib", extra="plot")
+    plot = run.plot
+    for name, figure in (
+        ("model", plot.model()),
+        ("deflection", plot.envelope("deflection")),
+        ("moment", plot.envelope("moment")),
+        ("shear", plot.envelope("shear")),
+        ("impact_factors", plot.impact_factors()),
+        ("vehicle", plot.vehicle()),
+    ):
+        png, svg = BytesIO(), BytesIO()
+        figure.savefig(png, format="png", dpi=200)
+        # The same run gives the same file.
+        with matplotlib.rc_context({"svg.hashsalt": "spanwise"}):
+            figure.savefig(svg, format="svg", metadata={"Date": None})
+        yield f"{name}.png", png.getvalue()
+        yield f"{name}.svg", svg.getvalue()

@@ -1,0 +1,68 @@
+"""The numbers of a run in columns and as plain values, for reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from numbers import Integral, Real
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._checks import shown
+from spanwise.run import QUANTITIES, Quantity, Run
+
+Array: TypeAlias = NDArray[np.float64]
+
+EXTREMES: Final = ("max", "min", "static_max", "static_min")
+
+
+def quantities(run: Run) -> list[Quantity]:
+    """Those that the run has: without a clamp there are no clamp moments."""
+    clamped = any(kind == "clamped" for _, kind in run.bridge.supports)
+    return [each for each in QUANTITIES if clamped or each != "clamp_moments"]
+
+
+def places(run: Run, quantity: Quantity) -> Array:
+    """Sections, supports or clamps [m], or numbers of the axles."""
+    return run.envelope(quantity).x
+
+
+def history(run: Run, quantity: Quantity) -> Array:
+    """Shape (time, column); of a shear the left and the right of each section in turn."""
+    if quantity not in QUANTITIES:
+        raise ValueError(f"quantity = {shown(quantity)}: must be one of {', '.join(QUANTITIES)}")
+    values: Array = getattr(run, quantity)
+    return values.reshape(len(values), -1)
+
+
+def envelope(run: Run, quantity: Quantity) -> dict[str, Array]:
+    """Extremes by name, each followed by its time, position and partner."""
+    found = run.envelope(quantity)
+    columns = {}
+    for name in EXTREMES:
+        extremes = getattr(found, name)
+        columns[name] = extremes.value
+        for each in ("time", "position", "partner"):
+            columns[f"{name}_{each}"] = getattr(extremes, each)
+    return columns
+
+
+def plain(value: object) -> Any:
+    """The value in lists, dictionaries, numbers and text; NaN as None, infinity as text."""
+    if isinstance(value, Mapping):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(each) for each in value]
+    if isinstance(value, bool | str) or value is None:
+        return value
+    if isinstance(value, Integral):
+        return int(value)
+    if not isinstance(value, Real):
+        raise TypeError(f"{value!r} has no plain value")
+    number = float(value)
+    if np.isfinite(number):
+        return number
+    return None if np.isnan(number) else str(number)

@@ -1,0 +1,119 @@
+"""The command line: ``spanwise cross CASE.toml``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from spanwise._core import __version__
+from spanwise._csv import csv_files
+from spanwise._figures import figure_files
+from spanwise._files import write_files
+from spanwise.case import Case
+from spanwise.report import json_text
+from spanwise.summary import summary
+
+BAD_INPUT, FAILURE, INTERRUPTED = 2, 1, 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; the exit code is 0, 2 for bad input, 1 if the numerics fail."""
+    try:
+        options = _parser().parse_args(arguments)
+        _say(_cross(options))
+    except KeyboardInterrupt:
+        print("spanwise: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except (ValueError, ImportError) as error:
+        return _complain(str(error), BAD_INPUT)
+    except OSError as error:
+        where = "" if error.filename is None else f"{error.filename}: "
+        return _complain(f"{where}{error.strerror or error}", BAD_INPUT)
+    except (RuntimeError, MemoryError) as error:
+        return _complain(str(error) or "out of memory", FAILURE)
+    return 0
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.print_usage(sys.stderr)
+        raise SystemExit(_complain(message, BAD_INPUT))
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="spanwise",
+        description="What vehicles do to bridges: dynamic response of beam bridges.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"spanwise {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    cross = commands.add_parser(
+        "cross",
+        allow_abbrev=False,
+        help="drive a vehicle over a bridge once",
+        description="Drive a vehicle over a bridge once and print the largest responses and the "
+        "impact factors. Everything is computed before any file is written.",
+    )
+    cross.add_argument(
+        "case", type=Path, metavar="CASE.toml", help="bridge, vehicle and crossing, in SI units"
+    )
+    cross.add_argument(
+        "--modes", type=int, metavar="N", help="number of modes, not that of the case"
+    )
+    cross.add_argument(
+        "--json",
+        metavar="FILE",
+        help="write the results as JSON; - for standard output, in place of the summary",
+    )
+    cross.add_argument(
+        "--csv", type=Path, metavar="DIR", help="write impact factors, extremes and histories there"
+    )
+    cross.add_argument(
+        "--plot",
+        type=Path,
+        metavar="DIR",
+        help="write figures there, as PNG and SVG; needs spanwise[plot]",
+    )
+    return parser
+
+
+def _cross(options: argparse.Namespace) -> str:
+    """Computes the crossing, writes the files asked for, and gives the text to print."""
+    case = Case.read(options.case)
+    run = case.run(**({} if options.modes is None else {"modes": options.modes}))
+    files: list[tuple[Path, Iterable[bytes]]] = []
+    folders = []
+    text = summary(run) + "\n"
+    if options.json == "-":
+        text = json_text(run)
+    elif options.json is not None:
+        files.append((Path(options.json), [json_text(run).encode()]))
+    if options.csv is not None:
+        folders.append(options.csv)
+        files += [(options.csv / name, content) for name, content in csv_files(run)]
+    if options.plot is not None:
+        folders.append(options.plot)
+        files += [(options.plot / name, [content]) for name, content in figure_files(run)]
+    write_files(files, folders)
+    return text
+
+
+def _say(text: str) -> None:
+    """Prints to standard output, whose reader may have gone."""
+    try:
+        print(text, end="", flush=True)
+    except OSError as error:
+        # Nothing more can be written: what is left is not to be tried again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise OSError(error.errno, error.strerror, "standard output") from error
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"spanwise: error: {message}", file=sys.stderr)
+    return code

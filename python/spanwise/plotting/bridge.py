@@ -1,0 +1,253 @@
+"""Figures of a bridge: its model, its basic bridge, its modes and influence lines."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._checks import count as whole_number
+from spanwise.plotting import symbols
+from spanwise.plotting.style import (
+    GREY,
+    LINES,
+    PALE,
+    Measure,
+    along,
+    axes_for,
+    figure_for,
+    measure_on,
+    metres,
+    styled,
+    support_letters,
+    whole,
+    zero_line,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+    from spanwise.bridge import Bridge, Quantity, Structure
+
+#: Margin beside the beam in a drawing of the model, as a fraction of its length.
+MARGIN: Final = 0.04
+
+INFLUENCES: Final[dict[str, Measure]] = {
+    "deflection": Measure("Deflection, down,\nfor 1 kN [mm]", 1e6, downward=True),
+    "slope": Measure("Slope of the deflection\nfor 1 kN [mrad]", 1e6),
+    "moment": Measure("Bending moment, sagging\ndrawn down, for 1 kN [kN m]", 1.0, downward=True),
+    "shear-left": Measure("Shear force on the left\nfor 1 kN [kN]", 1.0),
+    "shear-right": Measure("Shear force on the right\nfor 1 kN [kN]", 1.0),
+    "reaction": Measure("Reaction, up,\nfor 1 kN [kN]", 1.0),
+}
+
+
+class BridgePlot:
+    """Figures of a bridge, reached as ``bridge.plot``."""
+
+    def __init__(self, bridge: Bridge) -> None:
+        self._bridge = bridge
+
+    @styled
+    def model(self, *, ax: Axes | None = None) -> Figure:
+        """The lumped-mass beam on its supports, to scale along the bridge.
+
+        Dots are masses, their area in proportion. Letters name the supports.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        ax = axes_for(ax, height=1.75)
+        draw_bridge(ax, self._bridge, self._bridge.supports)
+        _dimensions(ax, self._bridge)
+        _note(ax, self._bridge, _masses(self._bridge))
+        return whole(ax)
+
+    @styled
+    def basic_bridge(self, *, ax: Axes | None = None) -> Figure:
+        """The bridge without its intermediate redundant supports.
+
+        These are all supports between the first and the last one. Where they were is drawn as open
+        circles: they stay reference stations (Kishan and Traill-Nash 1973, Fig. 3).
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        ax = axes_for(ax, height=1.75)
+        supports = self._bridge.supports
+        draw_bridge(ax, self._bridge, [s for s in supports if s in (supports[0], supports[-1])])
+        _dimensions(ax, self._bridge)
+        if removed := [x for x, _ in supports[1:-1]]:
+            ax.plot(
+                removed,
+                [0.0] * len(removed),
+                linestyle="none",
+                marker="o",
+                markersize=7.0,
+                markerfacecolor="white",
+                markeredgecolor="black",
+                clip_on=False,
+                zorder=6.0,
+            )
+            _note(ax, self._bridge, "open circles: supports taken away, kept as reference stations")
+        return whole(ax)
+
+    @styled
+    def modes(self, count: int = 3, *, figure: Figure | SubFigure | None = None) -> Figure:
+        """The lowest mode shapes, scaled to unit modal mass, with dots at the masses.
+
+        Parameters
+        ----------
+        count : int, optional
+            How many.
+        figure : matplotlib.figure.Figure or SubFigure, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        bridge = self._bridge
+        modes = bridge.modes(whole_number("count", count))
+        x = np.linspace(0.0, bridge.length, 401)
+        shapes = bridge.mode_shapes(count, x)
+        figure = figure_for(figure, 0.65 + 0.85 * count)
+        panels = figure.subplots(count, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        scale = 1e3
+        for k, ax in enumerate(panels):
+            zero_line(ax)
+            ax.plot(x, scale * shapes[:, k], **LINES[0])
+            ax.plot(
+                modes.stations,
+                scale * modes.shapes[:, k],
+                "o",
+                color="black",
+                markersize=3.5,
+                clip_on=False,
+            )
+            along(ax, bridge, letters=k == 0, label=k == count - 1)
+            ax.annotate(
+                f"Mode {k + 1}\n{modes.frequencies[k]:.3f} Hz",
+                (1.02, 0.5),
+                xycoords="axes fraction",
+                va="center",
+                annotation_clip=False,
+            )
+        figure.supylabel("Mode shape [$10^{-3}$ kg$^{-1/2}$]", fontsize=9.0)
+        return whole(figure)
+
+    @styled
+    def influence_line(
+        self,
+        quantity: Quantity,
+        at: float,
+        *,
+        structure: Structure = "actual",
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Response at one section to a load of 1 kN moving along the bridge.
+
+        Parameters
+        ----------
+        quantity : {"deflection", "slope", "moment", "shear-left", "shear-right", "reaction"}
+            The response.
+        at : float
+            The section, or the support for a reaction [m].
+        structure : {"actual", "basic"}, optional
+            The bridge with or without its intermediate redundant supports.
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        bridge = self._bridge
+        x = _with_both_sides(np.linspace(0.0, bridge.length, 401), at)
+        line = bridge.influence_line(quantity, at, x, structure)
+        measure = INFLUENCES[quantity]
+        ax = axes_for(ax)
+        zero_line(ax)
+        ax.fill_between(x, measure.factor * line, color=PALE, linewidth=0.0)
+        ax.plot(x, measure.factor * line, **LINES[0])
+        ax.plot([at], [0.0], "o", color="black", markersize=4.5, clip_on=False, zorder=5.0)
+        along(ax, bridge)
+        ax.set_xlabel("Position of the load, x [m]")
+        measure_on(ax, measure)
+        where = f"at x = {metres(at)}" + (", basic bridge" if structure == "basic" else "")
+        ax.set_title(where, loc="right", fontsize=8.0, pad=12.0)
+        return whole(ax)
+
+
+def draw_bridge(
+    ax: Axes, bridge: Bridge, supports: list[tuple[float, str]], *, above: float = 34.0
+) -> None:
+    """Beam, masses and these supports of it, with so many points left above the beam."""
+    length = bridge.length
+    ax.set_xlim(-MARGIN * length, (1.0 + MARGIN) * length)
+    ax.set_ylim(-52.0, above)
+    ax.set_yticks([])
+    ax.spines[["left", "top", "right"]].set_visible(False)
+    ax.set_xlabel("Distance from the left end, x [m]")
+    symbols.stroke(ax, symbols.level(ax), [(0.0, 0.0), (length, 0.0)], width=2.2)
+    held = any(kind == "clamped" for _, kind in supports)
+    letters = dict(zip(bridge.supports, support_letters(bridge), strict=True))
+    for support in supports:
+        x, kind = support
+        if kind == "clamped":
+            symbols.clamp(ax, x, left=x == 0.0)
+        else:
+            symbols.pin(ax, x, roller=held)
+            held = True
+        symbols.write(ax, symbols.local(ax, x), 0.0, -24.5, letters[support], size=9.0)
+    if len(bridge.masses):
+        ax.scatter(
+            bridge.stations,
+            np.zeros_like(bridge.stations),
+            s=np.clip(50.0 * bridge.masses / bridge.masses.max(), 4.0, None),
+            color="black",
+            clip_on=False,
+            zorder=5.0,
+        )
+
+
+def _dimensions(ax: Axes, bridge: Bridge) -> None:
+    """The spans, below the supports."""
+    bounds = bridge.span_bounds
+    for start, stop in pairwise(bounds):
+        symbols.dimension(ax, start, stop, -40.0)
+
+
+def _note(ax: Axes, bridge: Bridge, text: str) -> None:
+    level = symbols.level(ax)
+    symbols.write(ax, level, bridge.length, 20.0, text, color=GREY, across="right")
+
+
+def _masses(bridge: Bridge) -> str:
+    """How many masses there are and how heavy."""
+    if len(bridge.masses) == 0:
+        return "no masses"
+    tonnes = 1e-3 * bridge.masses
+    least, most = f"{tonnes.min():.4g}", f"{tonnes.max():.4g}"
+    each = f"{least} t each" if least == most else f"{least} to {most} t"
+    return f"{len(tonnes)} masses, {each}"
+
+
+def _with_both_sides(x: NDArray[np.float64], at: float) -> NDArray[np.float64]:
+    """With the section itself and a place just left of it, for what jumps there."""
+    return np.unique(np.clip(np.append(x, [at - 1e-9 * x[-1], at]), 0.0, x[-1]))

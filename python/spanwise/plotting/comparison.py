@@ -1,0 +1,118 @@
+"""Figures that set several runs beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
+from spanwise.plotting.style import (
+    LINES,
+    MARKERS,
+    along,
+    axes_for,
+    figure_for,
+    legend_above,
+    styled,
+    whole,
+    zero_line,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+    from spanwise.run import Run
+
+Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear"]
+
+
+@styled
+def compare_impact_factors(
+    runs: Mapping[str, Run], factor: Factor = "deflection", *, ax: Axes | None = None
+) -> Figure:
+    """Impact factors of several runs over the same bridge, blank where masked.
+
+    Parameters
+    ----------
+    runs : mapping of str to Run
+        The runs by what the legend calls them.
+    factor : {"deflection", "sagging", "hogging", "shear"}, optional
+        Which impact factor.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default in a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    if not runs:
+        raise ValueError("runs: give at least one run")
+    if factor not in FACTORS:
+        raise ValueError(f"factor = {factor!r}: must be one of {', '.join(FACTORS)}")
+    ax = axes_for(ax)
+    zero_line(ax, at=1.0)
+    for i, (name, run) in enumerate(runs.items()):
+        values = getattr(run.impact_factors, factor)
+        plot_masked(ax, run.impact_factors.sections, values, label=name, **LINES[i % len(LINES)])
+    first = next(iter(runs.values()))
+    along(ax, first.bridge)
+    ax.set_xlabel(f"{ax.get_xlabel()}\n{mask_note(first.impact_factors.mask)}")
+    ax.set_ylabel(f"Impact factor,\n{FACTORS[factor].lower()} [-]")
+    legend_above(ax, columns=3 if len(runs) != 4 else 2)
+    return whole(ax)
+
+
+@styled
+def compare_convergence(
+    modes: Sequence[int],
+    errors: Mapping[str, Mapping[str, Sequence[float]]],
+    *,
+    reference: str = "",
+    figure: Figure | SubFigure | None = None,
+) -> Figure:
+    """Errors against the number of modes included, a panel for each quantity.
+
+    Parameters
+    ----------
+    modes : sequence of int
+        Numbers of modes.
+    errors : mapping of str to mapping of str to sequence of float
+        By quantity and by method, the relative error with each number of modes. Errors of nought
+        have no place on the logarithmic axis and are left out.
+    reference : str, optional
+        What the errors are measured from, for the note below the figure.
+    figure : matplotlib.figure.Figure or SubFigure, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = figure_for(figure, 2.9)
+    panels = figure.subplots(1, len(errors), sharex=True, sharey=True, squeeze=False)[0]
+    for ax, (quantity, by_method) in zip(panels, errors.items(), strict=True):
+        for i, (method, error) in enumerate(by_method.items()):
+            ax.semilogy(
+                modes,
+                [each if each > 0.0 else np.nan for each in error],
+                marker=MARKERS[i % len(MARKERS)],
+                markersize=3.5,
+                markerfacecolor="white",
+                label=method,
+                **LINES[i % len(LINES)],
+            )
+        ax.set_title(quantity.capitalize())
+        ax.set_xlabel("Modes included [-]")
+        ax.locator_params(axis="x", integer=True)
+        ax.set_xlim(min(modes) - 0.5, max(modes) + 0.5)
+        ax.grid(axis="y", color="#e5e5e5", linewidth=0.6)
+        ax.set_axisbelow(True)
+    panels[0].set_ylabel("Relative error\nof the extremes [-]")
+    if reference:
+        figure.supxlabel(f"(reference: {reference})", fontsize=8.0)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels))
+    return whole(figure)

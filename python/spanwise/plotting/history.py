@@ -1,0 +1,83 @@
+"""Histories: which column of a run is asked for, and the axis of the front axle's position."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spanwise._checks import number
+from spanwise.plotting.envelope import BY_SECTION, envelope_of
+from spanwise.plotting.style import metres
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from spanwise.run import Quantity, Responses, Run
+
+Array: TypeAlias = NDArray[np.float64]
+Side: TypeAlias = Literal["left", "right"]
+
+
+def column(
+    run: Run, quantity: Quantity, at: float | None, side: Side | None
+) -> tuple[int, str, Side]:
+    """Which column of the histories is asked for, in numbers and in words."""
+    envelope = envelope_of(run, quantity)
+    if side not in ("left", "right", None):
+        raise ValueError(f"side = {side!r}: must be left or right")
+    if at is None:
+        largest = np.maximum(np.abs(envelope.static_max.value), np.abs(envelope.static_min.value))
+        index = int(largest.argmax())
+    else:
+        index = int(np.abs(envelope.x - number("at", at)).argmin())
+        nearest = envelope.x[index]
+        if not abs(nearest - at) <= 1e-6 * run.bridge.length:
+            hint = "; cross(..., sections=[...]) chooses others" if quantity in BY_SECTION else ""
+            raise ValueError(
+                f"at = {at!r}: the run has no {quantity} there, the nearest is at {nearest:g}{hint}"
+            )
+    x = float(envelope.x[index])
+    if quantity == "axle_loads":
+        return index, f"axle {x:g}", "right"
+    if quantity == "shear":
+        chosen: Side = side or ("left" if x >= run.bridge.length else "right")
+        return index, f"just {chosen} of x = {metres(x)}", chosen
+    return index, f"at x = {metres(x)}", "right"
+
+
+def histories(run: Run, quantity: str, index: int, side: Side) -> tuple[Array, Array]:
+    """That column, dynamic and static."""
+    if quantity == "axle_loads":
+        loads = run.axle_loads[:, index]
+        return loads, np.full_like(loads, run.static_axle_loads[index])
+    name = f"shear_{side}" if quantity == "shear" else quantity
+
+    def of(responses: Responses) -> Array:
+        values: Array = getattr(responses, name)[:, index]
+        return values
+
+    return of(run), of(run.static)
+
+
+def front_axle_on_top(ax: Axes, run: Run) -> None:
+    """A second axis: where the front axle is at that time."""
+    time, front = run.time, run.vehicle.axle_positions[:, 0]
+    ax.set_xlim(time[0], time[-1])
+    # Ticks just outside the axis are looked up too, so both go on far beyond their ends.
+    beyond = 1e3 * (time[-1] - time[0])
+    speeds = run.vehicle.speed[[0, -1]]
+    t = np.concatenate([[time[0] - beyond], time, [time[-1] + beyond]])
+    x = np.concatenate([[front[0] - speeds[0] * beyond], front, [front[-1] + speeds[1] * beyond]])
+
+    def position(when: ArrayLike) -> Array:
+        found: Array = np.interp(np.asarray(when, dtype=np.float64), t, x)
+        return found
+
+    def instant(where: ArrayLike) -> Array:
+        found: Array = np.interp(np.asarray(where, dtype=np.float64), x, t)
+        return found
+
+    top = ax.secondary_xaxis("top", functions=(position, instant))
+    top.set_xlabel("Front axle at x [m]", fontsize=8.0)

@@ -1,0 +1,186 @@
+"""How all figures look: size, fonts, lines that survive greyscale, and the words on the axes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
+
+from spanwise._extras import require
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+    from spanwise.bridge import Bridge
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+#: Width of a figure [in], the text width of an A4 report.
+WIDTH: Final = 6.3
+#: Height of one panel with a curve [in].
+HEIGHT: Final = 2.7
+
+STYLE: Final[dict[str, Any]] = {
+    "font.size": 9.0,
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 6),
+    "axes.xmargin": 0.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "legend.handlelength": 2.6,
+    "lines.linewidth": 1.3,
+    "lines.dash_capstyle": "butt",
+    "hatch.linewidth": 0.6,
+    "mathtext.default": "regular",
+}
+
+#: Ink of dimensions, reference lines and notes.
+GREY: Final = "#6b6b6b"
+#: Fill of bodies and areas.
+PALE: Final = "#d9d9d9"
+
+#: Lines told apart by dashes as well as by the colours of Okabe and Ito, in order of use.
+LINES: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#000000", "linestyle": "-"},
+    {"color": "#d55e00", "linestyle": (0, (5.0, 1.6))},
+    {"color": "#0072b2", "linestyle": (0, (1.2, 1.2))},
+    {"color": "#009e73", "linestyle": (0, (6.0, 1.5, 1.2, 1.5))},
+    {"color": "#56b4e9", "linestyle": (0, (3.0, 1.2, 1.0, 1.2, 1.0, 1.2))},
+    {"color": "#cc79a7", "linestyle": (0, (9.0, 2.0))},
+)
+MARKERS: Final = ("o", "s", "^", "D", "v", "P")
+DYNAMIC: Final = LINES[0]
+STATIC: Final = LINES[1]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """How a quantity is written on an axis.
+
+    Attributes
+    ----------
+    label : str
+        Name, direction and unit.
+    factor : float
+        From SI to that unit.
+    downward : bool
+        Whether positive values are drawn downward.
+    """
+
+    label: str
+    factor: float
+    downward: bool = False
+
+
+MEASURES: Final[dict[str, Measure]] = {
+    "deflection": Measure("Deflection, down [mm]", 1e3, downward=True),
+    "moment": Measure("Bending moment,\nsagging drawn down [kN m]", 1e-3, downward=True),
+    "shear": Measure("Shear force [kN]", 1e-3),
+    "reactions": Measure("Reaction, up [kN]", 1e-3),
+    "clamp_moments": Measure("Clamp moment,\nsagging drawn down [kN m]", 1e-3, downward=True),
+    "axle_loads": Measure("Axle load [kN]", 1e-3),
+}
+
+
+def measure_of(quantity: str) -> Measure:
+    """How a quantity of a run is written on an axis."""
+    if quantity in MEASURES:
+        return MEASURES[quantity]
+    raise ValueError(f"quantity = {quantity!r}: must be one of {', '.join(MEASURES)}")
+
+
+def styled(draw: Callable[P, T]) -> Callable[P, T]:
+    """Let a function draw in the style of this package, if matplotlib is there."""
+
+    @wraps(draw)
+    def in_style(*args: P.args, **kwargs: P.kwargs) -> T:
+        matplotlib = require("matplotlib", extra="plot")
+        with matplotlib.rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return in_style
+
+
+def new_figure(height: float) -> Figure:
+    """An empty figure of the width of a report and this height [in]."""
+    from spanwise.plotting.figure import Figure
+
+    return Figure(figsize=(WIDTH, height), layout="constrained")
+
+
+def axes_for(ax: Axes | None, height: float = HEIGHT) -> Axes:
+    """The axes given, or the only ones of a new figure of this height [in]."""
+    return new_figure(height).subplots() if ax is None else ax
+
+
+def figure_for(figure: Figure | SubFigure | None, height: float) -> Figure | SubFigure:
+    """The figure given, or a new one of this height [in]."""
+    return new_figure(height) if figure is None else figure
+
+
+def whole(part: Axes | Figure | SubFigure) -> Figure:
+    """The whole figure of which this is a part."""
+    figure = part.figure
+    assert figure is not None
+    return figure.figure
+
+
+def measure_on(ax: Axes, measure: Measure) -> None:
+    """Label the upright axis and turn it the way the quantity is drawn."""
+    ax.set_ylabel(measure.label)
+    if measure.downward:
+        ax.yaxis.set_inverted(True)
+
+
+def along(ax: Axes, bridge: Bridge, *, letters: bool = True, label: bool = True) -> None:
+    """Let the horizontal axis run along the bridge: hairlines at the supports, lettered on top."""
+    ax.set_xlim(0.0, bridge.length)
+    if label:
+        ax.set_xlabel("Distance from the left end, x [m]")
+    for letter, (x, _) in zip(support_letters(bridge), bridge.supports, strict=True):
+        ax.axvline(x, color=GREY, linewidth=0.5, zorder=0.5)
+        if letters:
+            ax.annotate(
+                letter,
+                (x, 1.0),
+                xycoords=ax.get_xaxis_transform(),
+                xytext=(0.0, 2.0),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8.0,
+                color=GREY,
+                annotation_clip=False,
+            )
+
+
+def zero_line(ax: Axes, at: float = 0.0) -> None:
+    """A thin line at nought, or at another value that the eye should compare with."""
+    ax.axhline(at, color=GREY, linewidth=0.7, zorder=0.6)
+
+
+def legend_above(ax: Axes, *, columns: int = 4, clear: float = 1.6) -> None:
+    """A legend above the axes, in one row if it has no more entries than columns."""
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=clear)
+
+
+def support_letters(bridge: Bridge) -> list[str]:
+    """A, B, C, ... for the supports, left to right."""
+    return [chr(ord("A") + i) if i < 26 else f"S{i + 1}" for i in range(len(bridge.supports))]
+
+
+def metres(x: float) -> str:
+    """A length to the millimetre."""
+    return f"{round(x, 3):g} m"

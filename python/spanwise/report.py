@@ -1,0 +1,123 @@
+"""A run as plain values, as JSON and CSV files, and as a pandas frame."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from spanwise._core import __version__
+from spanwise._csv import csv_files
+from spanwise._extras import require
+from spanwise._files import write_files
+from spanwise._values import envelope, history, places, plain, quantities
+from spanwise.run import Quantity, Run
+from spanwise.table import COLUMNS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def as_dict(run: Run) -> dict[str, Any]:
+    """The results as plain lists and numbers, that JSON can hold.
+
+    Where an impact factor is masked there is ``None``; a locked suspension has the friction limit
+    ``"inf"``, for JSON knows no infinity. The bridge comes with its masses as point masses.
+    """
+    result: dict[str, object] = {
+        "version": __version__,
+        "settings": {
+            "bridge": _bridge(run),
+            "vehicle": asdict(run.truck),
+            "crossing": {**run.settings, "sections": run.sections},
+        },
+        "sections": run.sections,
+        "supports": run.supports,
+        "frequencies": run.frequencies,
+        "final_speed": run.final_speed,
+        "steps": run.steps,
+        "impact_factors": _impact_factors(run),
+        **{quantity: envelope(run, quantity) for quantity in quantities(run)},
+    }
+    return {key: plain(value) for key, value in result.items()}
+
+
+def json_text(run: Run) -> str:
+    """`as_dict` as JSON, with a line for each key."""
+    lines = (
+        f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}"
+        for key, value in as_dict(run).items()
+    )
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def write_json(run: Run, path: str | Path) -> None:
+    """Write `as_dict` to a JSON file.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; then there is none, or the old one.
+    """
+    write_files([(Path(path), [json_text(run).encode()])])
+
+
+def write_csv(run: Run, directory: str | Path) -> None:
+    """Write impact factors, extremes and histories into a folder, which is made if there is none.
+
+    The files are ``impact_factors.csv``, ``envelope_<quantity>.csv`` and, if the run kept its
+    histories, ``history_<quantity>.csv`` and ``history_vehicle.csv``. Their first row names the
+    columns and units; numbers have a decimal point and all their digits.
+
+    Raises
+    ------
+    OSError
+        If the folder or a file cannot be written; then no file has been changed.
+    """
+    folder = Path(directory)
+    files = [(folder / name, content) for name, content in csv_files(run)]
+    write_files(files, folders=[folder])
+
+
+def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
+    """History of a quantity as a frame, see `Run.to_pandas`."""
+    pandas = require("pandas", extra="pandas")
+    values = history(run, quantity)
+    if quantity == "shear":
+        sides = ["left", "right"]
+        columns = pandas.MultiIndex.from_product([run.sections, sides], names=["x [m]", "side"])
+    elif quantity == "axle_loads":
+        columns = pandas.RangeIndex(1, values.shape[1] + 1, name="axle")
+    else:
+        of = {"reactions": "support [m]", "clamp_moments": "clamp [m]"}.get(quantity, "x [m]")
+        columns = pandas.Index(places(run, quantity), name=of)
+    index = pandas.Index(run.time, name="time [s]")
+    frame: pd.DataFrame = pandas.DataFrame(values, index=index, columns=columns)
+    return frame
+
+
+def _bridge(run: Run) -> dict[str, object]:
+    """Arguments of `Bridge` that make the same bridge."""
+    bridge = run.bridge
+    return {
+        "length": bridge.length,
+        "supports": bridge.supports,
+        "EI": bridge.EI,
+        "mass": 0.0,
+        "stations": bridge.stations,
+        "point_masses": np.column_stack([bridge.stations, bridge.masses]),
+    }
+
+
+def _impact_factors(run: Run) -> dict[str, object]:
+    factors = run.impact_factors
+    names = (*COLUMNS, "reactions", "axle_loads")
+    return {
+        "ratio": factors.ratio,
+        "mask": factors.mask,
+        **{name: getattr(factors, name) for name in names},
+        "masked": factors.masked,
+    }

@@ -1,0 +1,449 @@
+"""Bad input: a ValueError that names the key, the value and what is allowed, soon and cheaply."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+
+nan, inf = float("nan"), float("inf")
+
+#: Longest time in which nonsense may be refused [s]; it takes about a millisecond.
+SOON = 0.5
+#: Memory that may be taken in doing so [MiB]; one array of 10^7 numbers takes 76.
+LITTLE = 50
+
+AXLE: dict[str, Any] = {"position": 2.0, "tyre_stiffness": 2e6, "suspension_stiffness": 5e5}
+
+
+def two_spans(**changes: Any) -> sw.Bridge:
+    given = {"spans": [18.0, 18.0], "EI": 1.9e9, "mass": 6e3, "stations_per_span": 3}
+    return sw.Bridge(**{**given, **changes})
+
+
+def on_supports(**changes: Any) -> sw.Bridge:
+    held = [(0.0, "pinned"), (20.0, "pinned")]
+    return sw.Bridge(**{"length": 20.0, "supports": held, "EI": 1.9e9, "mass": 6e3, **changes})
+
+
+def vehicle(**changes: Any) -> sw.Vehicle:
+    axles = [sw.Axle(**AXLE), sw.Axle(**{**AXLE, "position": -2.0})]
+    return sw.Vehicle(**{"mass": 20e3, "pitch_inertia": 6e4, "axles": axles, **changes})
+
+
+def front_axle(**changes: Any) -> sw.Vehicle:
+    axles = [sw.Axle(**{**AXLE, **changes}), sw.Axle(**{**AXLE, "position": -2.0})]
+    return vehicle(axles=axles)
+
+
+def cross(**changes: Any) -> sw.Run:
+    return sw.cross(two_spans(), vehicle(), **{"speed": 20.0, "modes": 3, **changes})
+
+
+POSITIVE = "greater than 0"
+NUMBER = "must be a number"
+WHOLE = "must be a whole number"
+PER_SPAN = "one for each of the 2 spans"
+RATIO = "from 0 to below 1"
+IN_SPAN = "must lie on the beam, 0 to 36 m"
+ON_BEAM = "must lie on the beam, 0 to 20 m"
+
+#: What is asked for, and what the message must contain: the key, the value, what is allowed.
+BRIDGES: list[tuple[Callable[..., sw.Bridge], dict[str, Any], tuple[str, ...]]] = [
+    *((two_spans, {"EI": bad}, ("EI", str(bad), POSITIVE)) for bad in (-1, 0, inf)),
+    (two_spans, {"EI": nan}, ("EI", "NaN", POSITIVE)),
+    (two_spans, {"EI": [1e9, nan]}, ("EI[1]", "NaN", POSITIVE)),
+    (two_spans, {"EI": [1e9, 1e9, 1e9]}, ("EI", "3 values", PER_SPAN)),
+    (two_spans, {"EI": []}, ("EI", "0 values", PER_SPAN)),
+    (two_spans, {"mass": -1}, ("mass", "-1", "0 or more")),
+    (two_spans, {"mass": nan}, ("mass", "NaN", "0 or more")),
+    (two_spans, {"mass": inf}, ("mass", "inf", "finite")),
+    (two_spans, {"mass": 0}, ("mass", "0", "must carry mass")),
+    (two_spans, {"mass": [1e3, 1e3, 1e3]}, ("mass", "3 values", PER_SPAN)),
+    (two_spans, {"spans": []}, ("spans", "[]", "at least one")),
+    *(
+        (two_spans, {"spans": [18.0, bad]}, ("spans[1]", str(bad), POSITIVE))
+        for bad in (0, -1, inf)
+    ),
+    (two_spans, {"spans": [18.0, nan]}, ("spans[1]", "NaN", POSITIVE)),
+    (two_spans, {"spans": [1e308, 1e308]}, ("spans", "inf", "finite")),
+    (two_spans, {"spans": None}, ("spans", "length", "supports")),
+    (two_spans, {"length": 36.0}, ("length", "not used with spans")),
+    (two_spans, {"supports": [(0.0, "pinned")]}, ("supports", "not used with spans")),
+    (two_spans, {"ends": ("roller", "pinned")}, ("ends[0]", "roller", "pinned, clamped or free")),
+    (two_spans, {"ends": ("pinned",)}, ("ends", "('pinned',)", "pair")),
+    (two_spans, {"ends": "pinned"}, ("ends", "'pinned'", "pair")),
+    (two_spans, {"ends": ("free", "free")}, ("unstable", "pinned at 18 m", "two supports")),
+    (two_spans, {"stations_per_span": 0}, ("stations_per_span", "0", "1 or more")),
+    (two_spans, {"stations_per_span": -1}, ("stations_per_span", "-1", "not be negative")),
+    (two_spans, {"stations_per_span": 2.5}, ("stations_per_span", "2.5", WHOLE)),
+    (two_spans, {"stations_per_span": [3] * 3}, ("stations_per_span", "3 values", PER_SPAN)),
+    (two_spans, {"stations_per_span": 10**7}, ("stations", "0000000", "at most 5000")),
+    (two_spans, {"stations_per_span": 10**30}, ("stations_per_span", "1" + 30 * "0", "too large")),
+    (two_spans, {"stations": [5.0, 25.0]}, ("stations", "stations_per_span", "one of the two")),
+    (two_spans, {"point_masses": [(40.0, 1.0)]}, ("point_masses[0]", "40 m", IN_SPAN)),
+    (two_spans, {"point_masses": [(4.0, -1.0)]}, ("point_masses[0] mass", "-1", POSITIVE)),
+    (two_spans, {"point_masses": [(4.0, nan)]}, ("point_masses[0] mass", "NaN", POSITIVE)),
+    (two_spans, {"point_masses": [4.0]}, ("point_masses[0]", "4.0", "pair")),
+    (two_spans, {"point_masses": 4.0}, ("point_masses", "4.0", "list of pairs")),
+    *((on_supports, {"length": bad}, ("length", str(bad), POSITIVE)) for bad in (0, -20, inf)),
+    (on_supports, {"length": nan}, ("length", "NaN", POSITIVE)),
+    (on_supports, {"ends": ("pinned", "free")}, ("ends", "spans only")),
+    (on_supports, {"supports": []}, ("unstable", "fall", "two supports")),
+    (on_supports, {"supports": [(0.0, "pinned")]}, ("unstable", "pinned at 0 m", "two supports")),
+    (on_supports, {"supports": [(0.0, "pinned"), (21.0, "pinned")]}, ("[1]", "21 m", ON_BEAM)),
+    (on_supports, {"supports": [(-1.0, "pinned"), (20.0, "pinned")]}, ("[0]", "-1 m", ON_BEAM)),
+    (on_supports, {"supports": [(nan, "pinned"), (20.0, "pinned")]}, ("[0]", "NaN", ON_BEAM)),
+    (on_supports, {"supports": [(5.0, "pinned"), (5.0, "pinned")]}, ("5 m and 5 m", "same")),
+    (on_supports, {"supports": [(0.0, "pinned"), (9.0, "clamped")]}, ("[1]", "9 m", "end of the")),
+    (on_supports, {"supports": [(0.0, "fixed")]}, ("supports[0]", "fixed", "pinned or clamped")),
+    (on_supports, {"supports": [0.0, 20.0]}, ("supports[0]", "0.0", "pair")),
+    (on_supports, {"stations": []}, ("stations", "0 m to 20 m", "at least one station")),
+    (on_supports, {"stations": [25.0]}, ("stations[0]", "25 m", ON_BEAM)),
+    (on_supports, {"stations": [nan]}, ("stations[0]", "NaN", ON_BEAM)),
+    (on_supports, {"stations": [15.0, 5.0]}, ("stations[1]", "5 m", "greater than", "15 m")),
+    (on_supports, {"stations": [5.0, 5.0]}, ("stations[1]", "5 m", "greater than")),
+]
+
+LIMIT = "-1000 to 1000 N"
+VEHICLES: list[tuple[Callable[..., sw.Vehicle], dict[str, Any], tuple[str, ...]]] = [
+    *((vehicle, {"mass": bad}, ("mass", str(bad), POSITIVE)) for bad in (0, -1, inf)),
+    (vehicle, {"mass": nan}, ("mass", "NaN", POSITIVE)),
+    *((vehicle, {"pitch_inertia": bad}, ("pitch_inertia", str(bad), POSITIVE)) for bad in (0, -1)),
+    (vehicle, {"pitch_inertia": nan}, ("pitch_inertia", "NaN", POSITIVE)),
+    (vehicle, {"cg_height": -1}, ("cg_height", "-1", "0 or more")),
+    (vehicle, {"cg_height": nan}, ("cg_height", "NaN", "finite")),
+    (vehicle, {"axles": []}, ("axles", "[]", "at least one axle")),
+    (vehicle, {"axles": None}, ("axles", "None", "list of Axle")),
+    (vehicle, {"axles": sw.Axle(**AXLE)}, ("axles", "Axle(position=2.0", "list of Axle")),
+    (vehicle, {"axles": [AXLE]}, ("axles[0]", "'position': 2.0", "must be an Axle")),
+    (vehicle, {"axles": [sw.Axle(**AXLE)]}, ("axles[0].position", "2 m", "must be 0")),
+    *(
+        (front_axle, {f"{part}_stiffness": bad}, (f"axles[0].{part}_stiffness", text, POSITIVE))
+        for part in ("tyre", "suspension")
+        for bad, text in ((0, "0"), (-1, "-1"), (inf, "inf"), (nan, "NaN"))
+    ),
+    (front_axle, {"friction_limit": -1}, ("axles[0].friction_limit", "-1", "0 or more")),
+    (front_axle, {"friction_limit": nan}, ("axles[0].friction_limit", "NaN", "0 or more")),
+    *(
+        (
+            front_axle,
+            {"friction_limit": 1000, "initial_friction": bad},
+            ("axles[0].initial_friction", f"{bad} N", LIMIT),
+        )
+        for bad in (1001, -1001)
+    ),
+    (front_axle, {"initial_friction": nan}, ("axles[0].initial_friction", "NaN", "finite")),
+    (
+        front_axle,
+        {"friction_limit": inf, "initial_friction": inf},
+        ("axles[0].initial_friction", "inf", "finite"),
+    ),
+    (front_axle, {"position": nan}, ("axles[0].position", "NaN", "finite")),
+    (front_axle, {"position": -3}, ("axles[1].position", "-2 m", "front to rear", "-3 m")),
+    (front_axle, {"position": -2}, ("axles[1].position", "-2 m", "front to rear")),
+    # Both axles are behind the centre of mass.
+    (front_axle, {"position": -1}, ("axles[1].position", "-2 m", "centre of mass")),
+]
+
+STEADY = "constant-speed or constant-traction"
+C = np.diag(np.full(6, 1e3))
+CROSSINGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
+    *(({"speed": bad}, ("speed", str(bad), POSITIVE)) for bad in (0, -1, inf)),
+    ({"speed": nan}, ("speed", "NaN", POSITIVE)),
+    ({"speed": 1e-9}, ("speed", "0.000000001 m/s", "at most 2000000")),
+    ({"speed": 10**400}, ("speed", "too large")),
+    ({"step": 1e-12}, ("step", "0.000000000001 s", "at most 2000000")),
+    ({"tail": 1e9}, ("at most 2000000",)),
+    ({"approach": 1e9}, ("at most 2000000",)),
+    ({"modes": 0}, ("modes", "0", "1 to 6")),
+    ({"modes": 7}, ("modes", "7", "1 to 6")),
+    ({"modes": -1}, ("modes", "-1", "not be negative")),
+    ({"modes": 10**30}, ("modes", "too large")),
+    ({"drive": "constant_speed"}, ("drive", "constant_speed", STEADY)),
+    ({"drive": "Constant-Speed"}, ("drive", "Constant-Speed", STEADY)),
+    ({"drive": None}, ("drive", "None", STEADY)),
+    ({"recovery": "force_summation"}, ("recovery", "force_summation", "or superposition")),
+    ({"recovery": 3}, ("recovery", "3", "or superposition")),
+    *(({"damping": bad}, ("damping", str(bad), RATIO)) for bad in (-0.1, 1, 1.5)),
+    ({"damping": nan}, ("damping", "NaN", RATIO)),
+    ({"damping": [0.01, -0.02, 0.01]}, ("damping", "-0.02", RATIO)),
+    ({"damping": [0.01, 0.02]}, ("damping", "2 values", "each of the 3 modes")),
+    ({"damping": []}, ("damping", "0 values", "each of the 3 modes")),
+    ({"damping": C[:5, :5]}, ("damping", "5 x 5", "each of the 6 moving masses")),
+    ({"damping": C[:, :5]}, ("damping", "6 x 5", "square")),
+    ({"damping": C + np.eye(6, k=1)}, ("damping", "unsymmetric C", "must be symmetric")),
+    ({"damping": -C}, ("damping", "-1.000e3", "no negative eigenvalue")),
+    ({"damping": C * nan}, ("damping", "nan", "finite")),
+    ({"damping": [[0.1, 0.2], [0.3]]}, ("damping", "[0.3]", "ratio", "matrix")),
+    ({"damping": np.zeros((2, 2, 2))}, ("damping", "array", "ratio", "matrix")),
+    *(({"beta": bad}, ("beta", str(bad), "from 1/12 to 1/2")) for bad in (0, 0.08, 0.51, -1)),
+    ({"beta": nan}, ("beta", "NaN", "from 1/12 to 1/2")),
+    *(({"step": bad}, ("step", str(bad), POSITIVE)) for bad in (0, -0.001, inf)),
+    ({"step": nan}, ("step", "NaN", POSITIVE)),
+    ({"approach": -1}, ("approach", "-1", "0 or more")),
+    ({"approach": nan}, ("approach", "NaN", "0 or more")),
+    ({"tail": -1}, ("tail", "-1", "0 or more")),
+    ({"tail": inf}, ("tail", "inf", "finite")),
+    ({"gravity": 0}, ("gravity", "0", POSITIVE)),
+    ({"gravity": nan}, ("gravity", "NaN", POSITIVE)),
+    *(({"mask": bad}, ("mask", str(bad), RATIO)) for bad in (-0.1, 1, nan)),
+    ({"sections": []}, ("sections", "0 positions", "1 to 20000")),
+    ({"sections": [40.0]}, ("sections[0]", "40 m", IN_SPAN)),
+    ({"sections": [-1.0]}, ("sections[0]", "-1 m", IN_SPAN)),
+    ({"sections": [nan]}, ("sections[0]", "NaN", IN_SPAN)),
+    ({"sections": [9.0, 5.0]}, ("sections[1]", "5 m", "greater than", "9 m")),
+    ({"sections": [9.0, 9.0]}, ("sections[1]", "9 m", "greater than")),
+    ({"sections": np.linspace(0.0, 36.0, 20_001)}, ("sections", "20001", "1 to 20000")),
+    ({"histories": "no"}, ("histories", "'no'", "true or false")),
+    ({"histories": None}, ("histories", "None", "true or false")),
+]
+
+EVERYTHING = [*BRIDGES, *VEHICLES, *((cross, given, parts) for given, parts in CROSSINGS)]
+
+
+def named(value: object) -> str:
+    return re.sub(r"\s+", " ", str(value))[:60] if isinstance(value, dict) else ""
+
+
+@pytest.mark.parametrize(("make", "given", "parts"), EVERYTHING, ids=named)
+def test_the_message_names_key_value_and_what_is_allowed(
+    make: Callable[..., object], given: dict[str, Any], parts: tuple[str, ...]
+) -> None:
+    started = time.perf_counter()
+    with pytest.raises(ValueError) as caught:  # noqa: PT011 - the parts are the match
+        make(**given)
+    assert time.perf_counter() - started < SOON
+    for part in parts:
+        assert part in str(caught.value)
+
+
+#: What is no number. Text that could be read as one is no number either.
+NO_NUMBERS = ["2.0", "abc", None, True, 1j, b"2", {"a": 1}, {2.0}, np.array([1j]), object()]
+
+
+@pytest.mark.parametrize("bad", NO_NUMBERS, ids=repr)
+@pytest.mark.parametrize(
+    ("make", "key"),
+    [
+        (two_spans, "EI"),
+        (two_spans, "mass"),
+        (vehicle, "mass"),
+        (vehicle, "pitch_inertia"),
+        (vehicle, "cg_height"),
+        (front_axle, "position"),
+        (front_axle, "tyre_stiffness"),
+        (front_axle, "suspension_stiffness"),
+        (front_axle, "friction_limit"),
+        (front_axle, "initial_friction"),
+        *((cross, key) for key in ("speed", "approach", "tail", "beta", "gravity", "mask")),
+        (cross, "damping"),
+    ],
+)
+def test_numbers_must_be_numbers(make: Callable[..., object], key: str, bad: object) -> None:
+    with pytest.raises(ValueError, match=rf"{key}(\[0\])? = .*must be a number"):
+        make(**{key: bad})
+
+
+@pytest.mark.parametrize("bad", [each for each in NO_NUMBERS if each is not None], ids=repr)
+@pytest.mark.parametrize(
+    ("make", "key"), [(two_spans, "spans"), (on_supports, "stations"), (cross, "sections")]
+)
+def test_lists_must_hold_numbers(make: Callable[..., object], key: str, bad: object) -> None:
+    with pytest.raises(ValueError, match=rf"{key}(\[0\])? = .*must be a number"):
+        make(**{key: bad})
+    with pytest.raises(ValueError, match=rf"{key}\[0\] = .*must be a number"):
+        make(**{key: [bad]})
+
+
+@pytest.mark.parametrize("bad", ["3", True, 2.5, 1j, [3]], ids=repr)
+def test_numbers_of_modes_must_be_whole(bad: object) -> None:
+    with pytest.raises(ValueError, match=r"modes = .*must be a whole number"):
+        cross(modes=bad)
+    with pytest.raises(ValueError, match=r"modes = .*must be a whole number"):
+        two_spans().modes(bad)  # type: ignore[arg-type]
+
+
+def test_long_values_are_cut_in_messages() -> None:
+    with pytest.raises(ValueError, match="must be a number") as caught:
+        cross(speed=list(range(10_000)))
+    assert len(str(caught.value)) < 200
+
+
+def test_numpy_is_welcome() -> None:
+    bridge = sw.Bridge(
+        spans=np.array([18.0, 18.0]),  # type: ignore[arg-type]
+        EI=np.array([1.9e9, 1.9e9]),
+        mass=np.array(6e3),
+        stations_per_span=np.array([3, 3]),  # type: ignore[arg-type]
+        point_masses=np.array([[4.0, 100.0]]),
+    )
+    given = {
+        "speed": np.float32(20.0),
+        "modes": np.int64(3),
+        "damping": np.full(3, 0.01),
+        "sections": np.array([4, 9]),
+        "step": np.array(0.001),
+        "histories": np.bool_(False),
+    }
+    run = sw.cross(bridge, vehicle(mass=np.int32(20_000)), **given)  # type: ignore[arg-type]
+    same = sw.Bridge(
+        spans=[18, 18], EI=1.9e9, mass=6e3, stations_per_span=3, point_masses=[(4, 100)]
+    )
+    plain = sw.cross(same, vehicle(), speed=20, modes=3, damping=0.01, sections=[4, 9], step=0.001)
+    np.testing.assert_array_equal(
+        run.envelope("moment").max.value, plain.envelope("moment").max.value
+    )
+
+
+def test_wrong_objects() -> None:
+    with pytest.raises(TypeError, match="bridge = 1: must be a Bridge"):
+        sw.cross(1, vehicle(), speed=20.0)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"vehicle = None: must be a Vehicle"):
+        sw.cross(two_spans(), None, speed=20.0)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("forces", [(1.0,), (1.0, 2.0, 3.0), ()])
+def test_initial_friction_needs_a_force_for_each_axle(forces: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match=r"initial_friction = \(.*each of the 2 axles"):
+        vehicle().with_initial_friction(*forces)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "at", "x", "parts"),
+    [
+        ("moments", 5.0, 1.0, ("quantity", "moments", "moment, shear-left")),
+        (None, 5.0, 1.0, ("quantity", "None", "moment, shear-left")),
+        ("moment", 40.0, 1.0, ("at", "40 m", IN_SPAN)),
+        ("moment", nan, 1.0, ("at", "NaN", IN_SPAN)),
+        ("moment", "5", 1.0, ("at", "'5'", NUMBER)),
+        ("reaction", 5.0, 1.0, ("at", "5 m", "position of a support")),
+        ("moment", 5.0, [1.0, nan], ("x", "nan", "finite")),
+        ("moment", 5.0, "1", ("x", "'1'", NUMBER)),
+        ("moment", 5.0, None, ("x", "None", NUMBER)),
+        ("moment", 5.0, 1j, ("x", "1j", NUMBER)),
+    ],
+)
+def test_influence_lines(quantity: Any, at: Any, x: Any, parts: tuple[str, ...]) -> None:
+    with pytest.raises(ValueError) as caught:  # noqa: PT011 - the parts are the match
+        two_spans().influence_line(quantity, at, x)
+    for part in parts:
+        assert part in str(caught.value)
+
+
+def test_results_that_do_not_exist() -> None:
+    run = cross(histories=False)
+    with pytest.raises(ValueError, match=r"histories were not kept: call cross\(.*True"):
+        _ = run.moment
+    with pytest.raises(ValueError, match=r'quantity = "moments": must be deflection, moment'):
+        run.envelope("moments")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r'ratio = "max": must be extremes'):
+        run.ratios("max")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="mask = 2: must be a fraction"):
+        run.ratios(mask=2.0)
+    with pytest.raises(ValueError, match="mask = '2': must be a number"):
+        run.ratios(mask="2")  # type: ignore[arg-type]
+
+
+# Limits
+
+
+@pytest.mark.parametrize("beta", [1.0 / 12.0, 1.0 / 6.0, 0.2])
+def test_the_step_may_go_up_to_the_stability_limit_that_the_message_tells(beta: float) -> None:
+    with pytest.raises(ValueError, match="stable only for steps up to") as caught:
+        cross(step=1.0, beta=beta)
+    assert "step = 1 s" in str(caught.value)
+    told = re.search(r"up to (\S+) s", str(caught.value))
+    assert told is not None
+    limit = float(told[1])
+    # Newmark with gamma = 1/2 is stable up to omega h = (1/4 - beta)^(-1/2); omega is at least the
+    # highest frequency of the bridge alone, and of the vehicle alone.
+    fastest = max(*two_spans().modes(3).omega, *(2 * np.pi * vehicle().frequencies(locked=True)))
+    assert limit <= 1.0 / (fastest * np.sqrt(0.25 - beta))
+    run = cross(step=0.999 * limit, beta=beta)
+    assert run.settings["step"] <= limit  # type: ignore[operator]
+    # Below the limit the step is coarse, but nothing grows.
+    assert np.abs(run.moment).max() < 10.0 * np.abs(run.static.moment).max()
+    with pytest.raises(ValueError, match="stable only for steps up to"):
+        cross(step=1.001 * limit, beta=beta)
+
+
+def test_average_acceleration_has_no_stability_limit() -> None:
+    run = cross(step=1.0, beta=0.25)
+    assert np.isfinite(run.moment).all()
+
+
+def test_histories_that_would_not_fit_are_refused() -> None:
+    # 4 x 300 responses at 180 000 instants, dynamic and static, are more than 3 GB.
+    given = {"sections": np.linspace(0.0, 36.0, 300), "step": 1e-5}
+    with pytest.raises(ValueError, match=r"histories = true: .*histories = false") as caught:
+        cross(**given)
+    assert "GB" in str(caught.value)
+
+
+def fresh(code: str) -> dict[str, float]:
+    """What the code measures in a process of its own: seconds and MiB, from `measure(make)`."""
+    frame = """
+        import resource, sys, time
+        import spanwise as sw
+
+        def peak():
+            kilo = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+            return kilo / 1024 / (1024 if sys.platform == "darwin" else 1)
+
+        def measure(make):
+            memory, started = peak(), time.perf_counter()
+            try:
+                make()
+            except ValueError as error:
+                print(time.perf_counter() - started, peak() - memory)
+            else:
+                sys.exit("not refused")
+    """
+    program = textwrap.dedent(frame) + code
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    seconds, mebibytes = map(float, done.stdout.split())
+    return {"seconds": seconds, "mebibytes": mebibytes}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs the module resource")
+@pytest.mark.parametrize(
+    "make",
+    [
+        "sw.Bridge(spans=[20.0], EI=1e9, mass=1e3, stations_per_span=10**7)",
+        "sw.Bridge(spans=[20.0], EI=1e9, mass=1e3, stations_per_span=10**18)",
+        "sw.cross(bridge, truck, speed=1e-9)",
+        "sw.cross(bridge, truck, speed=20.0, step=1e-15)",
+        "sw.cross(bridge, truck, speed=20.0, tail=1e12)",
+    ],
+)
+def test_what_would_not_fit_is_refused_before_it_takes_time_or_memory(make: str) -> None:
+    taken = fresh(
+        "bridge = sw.Bridge(spans=[20.0], EI=1e9, mass=1e3)\n"
+        "truck = sw.vehicles.kishan_1973()\n"
+        f"measure(lambda: {make})"
+    )
+    assert taken["seconds"] < SOON
+    assert taken["mebibytes"] < LITTLE
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs the module resource")
+def test_a_huge_case_file_is_refused_unread(tmp_path: Path) -> None:
+    path = tmp_path / "huge.toml"
+    with path.open("wb") as file:
+        file.truncate(100 * 2**20)
+    taken = fresh(f"measure(lambda: sw.Case.read({str(path)!r}))")
+    assert taken["seconds"] < SOON
+    assert taken["mebibytes"] < 10

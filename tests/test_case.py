@@ -1,0 +1,281 @@
+"""Case files: what they may hold, what they make, and what is said of those that cannot be used."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+
+BRIDGE = """
+[bridge]
+spans = [18.288, 18.288]
+EI = 1.9415e9
+mass = 6037.6
+stations_per_span = 3
+"""
+VEHICLE = """
+[vehicle]
+preset = "kishan-1973"
+"""
+OWN_VEHICLE = """
+[vehicle]
+mass = 29e3
+pitch_inertia = 52e3
+cg_height = 1.8
+
+[[vehicle.axles]]
+position = 2.1
+tyre_stiffness = 7e6
+suspension_stiffness = 4e6
+friction_limit = 20e3
+initial_friction = -5e3
+
+[[vehicle.axles]]
+position = -2.1
+tyre_stiffness = 7e6
+suspension_stiffness = 4e6
+friction_limit = inf
+"""
+CROSSING = """
+[crossing]
+speed = 22.86
+modes = 3
+"""
+
+
+def test_a_case_runs_as_the_same_arguments_do() -> None:
+    case = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + 'drive = "constant-traction"\n')
+    bridge = sw.Bridge(spans=[18.288, 18.288], EI=1.9415e9, mass=6037.6, stations_per_span=3)
+    truck = sw.vehicles.kishan_1973()
+    expected = sw.cross(bridge, truck, speed=22.86, modes=3, drive="constant-traction")
+    run = case.run()
+    np.testing.assert_array_equal(run.moment, expected.moment)
+    assert run.settings == expected.settings
+    assert case.vehicle == truck
+    assert case.crossing == {"speed": 22.86, "modes": 3, "drive": "constant-traction"}
+
+
+def test_overrides_replace_what_the_file_says() -> None:
+    case = sw.Case.parse(BRIDGE + VEHICLE + CROSSING)
+    run = case.run(modes=2, sections=[9.0])
+    assert len(run.frequencies) == 2
+    assert run.sections.tolist() == [9.0]
+    assert case.crossing["modes"] == 3
+
+
+def test_a_vehicle_of_its_own() -> None:
+    case = sw.Case.parse(BRIDGE + OWN_VEHICLE + CROSSING)
+    front = sw.Axle(
+        position=2.1,
+        tyre_stiffness=7e6,
+        suspension_stiffness=4e6,
+        friction_limit=20e3,
+        initial_friction=-5e3,
+    )
+    rear = sw.Axle(
+        position=-2.1, tyre_stiffness=7e6, suspension_stiffness=4e6, friction_limit=float("inf")
+    )
+    expected = sw.Vehicle(mass=29e3, pitch_inertia=52e3, cg_height=1.8, axles=[front, rear])
+    assert case.vehicle == expected
+
+
+def test_a_preset_can_be_changed() -> None:
+    changes = "initial_friction = [1000.0, -1000]\nmass = 30e3\n"
+    vehicle = sw.Case.parse(BRIDGE + VEHICLE + changes + CROSSING).vehicle
+    assert [axle.initial_friction for axle in vehicle.axles] == [1000.0, -1000.0]
+    assert vehicle.mass == 30e3
+    assert vehicle.pitch_inertia == sw.vehicles.kishan_1973().pitch_inertia
+
+
+def test_supports_and_point_masses_are_lists_of_pairs() -> None:
+    bridge = """
+    [bridge]
+    length = 20
+    supports = [[0, "clamped"], [20, "pinned"]]
+    EI = [1e9]
+    mass = 5e3
+    stations = [5, 10, 15]
+    point_masses = [[10, 250.0]]
+    """
+    case = sw.Case.parse(bridge + VEHICLE + CROSSING)
+    assert case.bridge.supports == [(0.0, "clamped"), (20.0, "pinned")]
+    assert case.bridge.masses.tolist() == [37500.0, 25250.0, 37500.0]
+
+
+def test_every_argument_is_a_key() -> None:
+    # The settings of a run with every argument of `cross`, as the signature lists them.
+    given = {
+        "speed": "20.0",
+        "modes": "2",
+        "drive": '"constant-traction"',
+        "damping": "[0.01, 0.02]",
+        "approach": "5.0",
+        "tail": "0.1",
+        "sections": "[9.0, 18.0]",
+        "recovery": '"superposition"',
+        "step": "0.001",
+        "beta": "0.25",
+        "gravity": "9.8",
+        "mask": "0.1",
+        "histories": "false",
+    }
+    arguments = list(inspect.signature(sw.cross).parameters)[2:]
+    assert list(given) == arguments
+    text = "[crossing]\n" + "\n".join(f"{key} = {value}" for key, value in given.items())
+    run = sw.Case.parse(BRIDGE + VEHICLE + text).run()
+    assert run.settings["mask"] == 0.1
+    assert run.settings["damping"] == [0.01, 0.02]
+    assert run.sections.tolist() == [9.0, 18.0]
+
+
+def test_read_names_the_file_in_errors(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(BRIDGE.replace("6037.6", "-1") + VEHICLE + CROSSING, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"case\.toml, \[bridge\]: mass.* = -1: must be") as caught:
+        sw.Case.read(path)
+    assert str(path) in str(caught.value)
+
+
+def test_a_byte_order_mark_does_no_harm(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text("\ufeff" + BRIDGE + VEHICLE + CROSSING, encoding="utf-8")
+    assert sw.Case.read(str(path)).crossing["modes"] == 3
+
+
+KNOWN = r"allowed: \[bridge\], \[vehicle\], \[crossing\]"
+REFUSED = [
+    # Tables
+    ("", r"case: missing \[bridge\], \[vehicle\], \[crossing\]"),
+    (BRIDGE + CROSSING, r"case: missing \[vehicle\]"),
+    (BRIDGE.replace("bridge", "bridges"), rf"'bridges' \(did you mean 'bridge'\?\); {KNOWN}"),
+    ("speed = 20\n" + BRIDGE, rf"'speed' \(belongs in \[crossing\]\); {KNOWN}"),
+    ("mass = 20\n" + BRIDGE, rf"'mass' \(belongs in \[bridge\], \[vehicle\]\); {KNOWN}"),
+    ("bridge = 3\n", r"bridge = 3: must be a table, \[bridge\]"),
+    (BRIDGE.replace("[bridge]", "[[bridge]]"), r"bridge = \[\{'spans'.*: must be a table"),
+    # Bridge
+    (
+        BRIDGE + "ei = 2e9" + VEHICLE + CROSSING,
+        r"case, \[bridge\]: unknown key 'ei' \(did you mean 'EI'\?\); allowed: spans, ends, ",
+    ),
+    (
+        BRIDGE.replace("stations_per_span", "stations-per-span") + VEHICLE + CROSSING,
+        r"'stations-per-span' \(did you mean 'stations_per_span'\?\)",
+    ),
+    (BRIDGE + "preset = 1" + VEHICLE + CROSSING, r"'preset' \(belongs in \[vehicle\]\)"),
+    (BRIDGE + "xyz = 1" + VEHICLE + CROSSING, r"unknown key 'xyz'; allowed: spans"),
+    ("[bridge]\nspans = [9]\n" + VEHICLE + CROSSING, r"\[bridge\]: missing EI, mass"),
+    (
+        "[bridge]\nEI = 1\nmass = 1\n" + VEHICLE + CROSSING,
+        r"\[bridge\]: .* either spans, or length",
+    ),
+    (BRIDGE.replace("6037.6", "'6037'") + VEHICLE + CROSSING, r"mass = '6037': must be a number"),
+    # Vehicle
+    (
+        BRIDGE + VEHICLE.replace("-1973", "1973") + CROSSING,
+        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973 \(did you mean 'kishan-1973'\?\)",
+    ),
+    (BRIDGE + "[vehicle]\npreset = 3" + CROSSING, r"preset = 3: must be one of kishan-1973"),
+    (BRIDGE + "[vehicle]\npreset = []" + CROSSING, r"preset = \[\]: must be one of"),
+    (BRIDGE + "[vehicle]\nprest = 'a'" + CROSSING, r"'prest' \(did you mean 'preset'\?\)"),
+    (BRIDGE + "[vehicle]" + CROSSING, r"missing mass, pitch_inertia, axles; or name a preset: kis"),
+    (BRIDGE + VEHICLE + "axles = []" + CROSSING, r"'axles' \(not beside a preset\)"),
+    (
+        BRIDGE + VEHICLE + "initial_friction = [1.0]" + CROSSING,
+        r"initial_friction = \(1\.0,\): give one force for each of the 2 axles",
+    ),
+    (
+        BRIDGE + VEHICLE + "initial_friction = [1e9, 0.0]" + CROSSING,
+        r"axles\[0\]\.initial_friction = 1000000000 N: must lie within the friction limit",
+    ),
+    (
+        BRIDGE + "[vehicle]\nmass=1\npitch_inertia=1\naxles=[1]" + CROSSING,
+        r"axles\[0\] = 1: .*table",
+    ),
+    (
+        BRIDGE + "[vehicle]\nmass=1\npitch_inertia=1\naxles=1" + CROSSING,
+        r"axles = 1: .* tables, \[\[",
+    ),
+    (
+        BRIDGE + OWN_VEHICLE.replace("tyre_s", "tire_s") + CROSSING,
+        r"axles\[0\]: unknown key 'tire_stiffness' \(did you mean 'tyre_stiffness'\?\); allowed: ",
+    ),
+    (
+        BRIDGE + OWN_VEHICLE.replace("position = -2.1", "") + CROSSING,
+        r"\[vehicle\]: axles\[1\]: missing position",
+    ),
+    (
+        BRIDGE + "[vehicle]\nmass = 1\nfriction_limit = 2" + CROSSING,
+        r"'friction_limit' \(belongs in each \[\[vehicle\.axles\]\]\)",
+    ),
+    # Crossing
+    (BRIDGE + VEHICLE + "[crossing]", r"case, \[crossing\]: missing speed"),
+    (
+        BRIDGE + VEHICLE + CROSSING + "sped = 1",
+        r"'sped' \(did you mean 'speed'\?\); allowed: speed,",
+    ),
+    (BRIDGE + VEHICLE + CROSSING + "EI = 1", r"unknown key 'EI' \(belongs in \[bridge\]\)"),
+    (BRIDGE + VEHICLE + CROSSING + "bridge = 1", r"unknown key 'bridge'; allowed: speed"),
+    # TOML
+    (BRIDGE + "mass = 3", r"case, line 7: is not valid TOML: .*: mass = 3"),
+    ("[bridge]\nEI = 3e9 N m2\n", r"case, line 2: is not valid TOML: .*: EI = 3e9 N m2"),
+    ("[bridge]\nspans = [18., 18.]", r"line 2: .*digits on both sides of a point: 22\.0"),
+    ("[bridge]\nmass = .5", r"line 2: .*digits on both sides of a point: 22\.0"),
+    ("a = " + 100_000 * "[", "is not valid TOML"),
+    ("a = " + 5_000 * "1", "is not valid TOML"),
+    ("a = \x00\x1b[31m", r"line 1: is not valid TOML: .*: a = \?\?\[31m"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), REFUSED, ids=[message for _, message in REFUSED])
+def test_what_cannot_be_used_is_explained(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message) as caught:
+        sw.Case.parse(text)
+    assert str(caught.value).startswith("case")
+
+
+def test_values_are_checked_when_it_runs() -> None:
+    case = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + 'drive = "constant"', source="a.toml")
+    with pytest.raises(ValueError, match=r'a\.toml, \[crossing\]: drive = "constant": must be'):
+        case.run()
+    with pytest.raises(ValueError, match=r"a\.toml: modes = 7: must be 1 to 6"):
+        case.run(drive="constant-speed", modes=7)
+
+
+def test_no_such_file(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"nothing\.toml"):
+        sw.Case.read(tmp_path / "nothing.toml")
+
+
+def test_a_folder_is_no_case(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="is a folder; a case is a TOML file"):
+        sw.Case.read(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_is_no_case_and_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ValueError, match="is not a regular file"):
+        sw.Case.read(tmp_path / "pipe")
+
+
+def test_what_is_not_text_is_no_case(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_bytes(b"[bridge]\n\xff\xfe\x00")
+    with pytest.raises(ValueError, match=r"case\.toml, line 2: is not UTF-8 text"):
+        sw.Case.read(path)
+
+
+def test_the_largest_case_file(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    text = BRIDGE + VEHICLE + CROSSING
+    path.write_text(text + "#" * (2**20 - len(text)), encoding="utf-8")
+    assert sw.Case.read(path).crossing["modes"] == 3
+    with path.open("a", encoding="utf-8") as file:
+        file.write("#")
+    with pytest.raises(ValueError, match="has 1048577 bytes; a case file has at most 1048576"):
+        sw.Case.read(path)

@@ -1,0 +1,274 @@
+"""The command line: what it prints and writes, and how it says no."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+import spanwise as sw
+from spanwise.cli import main
+
+CASE = """
+[bridge]
+spans = [18.288, 18.288]
+EI = 1.9415e9
+mass = 6037.6
+stations_per_span = 3
+[vehicle]
+preset = "kishan-1973"
+[crossing]
+speed = 22.86
+drive = "constant-traction"
+modes = 3
+"""
+
+#: So soft that the vehicle does not come out of the sag.
+SOFT = CASE.replace("1.9415e9", "1e7").replace("22.86", "1.0")
+
+FIGURES = ("model", "deflection", "moment", "shear", "impact_factors", "vehicle")
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def left(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir()} - {"case.toml"}
+
+
+def test_summary(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cross", str(case)]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    run = sw.Case.read(case).run()
+    assert str(run.impact_factors) in out
+    lines = {line[:24].strip(): line.split() for line in out.splitlines()}
+    # The greatest sagging moment, where and when, its static partner in the table, their ratio.
+    moment = run.envelope("moment")
+    i = int(moment.max.value.argmax())
+    expected = [
+        f"{moment.max.value[i] / 1e3:.3f}",
+        *("x", "=", f"{run.sections[i]:.3f}", "m"),
+        f"{moment.max.time[i]:.4f}",
+        f"{moment.max.position[i]:.3f}",
+        f"{moment.static_max.value[i] / 1e3:.3f}",
+        f"{moment.max.value[i] / moment.static_max.value[i]:.3f}",
+    ]
+    assert lines["moment, sagging [kN m]"][4:] == expected
+    # 32 040 lb an axle.
+    assert "static axle loads 142.5, 142.5 kN" in out
+    assert "constant-traction" in out
+    assert f"{run.frequencies[0]:.3f}" in out
+    # The hogging moment is governed by the middle support.
+    assert "x = 18.288 m" in out
+
+
+def test_summary_of_every_kind_of_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = tmp_path / "case.toml"
+    matrix = "[[1000.0, 0.0], [0.0, 1000.0]]"
+    case.write_text(
+        CASE.replace("spans = [18.288, 18.288]", "spans = [18.0]")
+        .replace("= 3\n[v", '= 2\nends = ["clamped", "pinned"]\n[v')
+        .replace("modes = 3", f"modes = 2\nhistories = false\ndamping = {matrix}"),
+        encoding="utf-8",
+    )
+    assert main(["cross", str(case)]) == 0
+    out, _ = capsys.readouterr()
+    assert "damping by a matrix" in out
+    assert "clamped at 0 m" in out
+
+
+def test_modes_go_before_those_of_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cross", str(case), "--modes", "1", "--json", "-"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["frequencies"]) == 1
+
+
+def test_json_alone_on_standard_output(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cross", str(case), "--json", "-"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out) == sw.Case.read(case).run().to_dict()
+    assert err == ""
+    assert left(case.parent) == set()
+
+
+def test_files(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    json_file, csv_folder = tmp_path / "run.json", tmp_path / "a" / "csv"
+    assert main(["cross", str(case), "--json", str(json_file), "--csv", str(csv_folder)]) == 0
+    assert "largest" in capsys.readouterr().out
+    run = sw.Case.read(case).run()
+    assert json.loads(json_file.read_text(encoding="utf-8")) == run.to_dict()
+    run.to_csv(tmp_path / "same")
+    same = {path.name: path.read_bytes() for path in (tmp_path / "same").iterdir()}
+    assert {path.name: path.read_bytes() for path in csv_folder.iterdir()} == same
+
+
+def test_figures(case: Path, tmp_path: Path) -> None:
+    assert main(["cross", str(case), "--plot", str(tmp_path / "figures")]) == 0
+    expected = {f"{name}.{form}" for name in FIGURES for form in ("png", "svg")}
+    assert left(tmp_path / "figures") == expected
+    for name in FIGURES:
+        assert (tmp_path / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+        assert "<svg" in (tmp_path / "figures" / f"{name}.svg").read_text(encoding="utf-8")
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["--version"])
+    assert stop.value.code == 0
+    assert capsys.readouterr().out == f"spanwise {sw.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (CASE.replace("6037.6", "-1"), r"[bridge]: mass"),
+        (CASE.replace("speed", "sped"), "did you mean 'speed'?"),
+        (CASE + "x = [", "line 13: is not valid TOML: Invalid value: x = ["),
+        (CASE.replace("modes = 3", "modes = 9"), "modes = 9: must be 1 to 6"),
+        (CASE.replace("traction", "traktion"), 'drive = "constant-traktion"'),
+    ],
+)
+def test_a_bad_case(
+    case: Path, capsys: pytest.CaptureFixture[str], text: str, message: str
+) -> None:
+    case.write_text(text, encoding="utf-8")
+    outputs = [f"--{form}={case.parent / form}" for form in ("json", "csv", "plot")]
+    assert main(["cross", str(case), *outputs]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"spanwise: error: {case}")
+    assert message in err
+    assert err.count("\n") == 1
+    assert left(case.parent) == set()
+
+
+def test_no_such_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cross", str(tmp_path / "no.toml")]) == 2
+    expected = f"spanwise: error: {tmp_path / 'no.toml'}: No such file or directory\n"
+    assert capsys.readouterr().err == expected
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "COMMAND"),
+        (["crosss"], "invalid choice: 'crosss'"),
+        (["cross"], "CASE.toml"),
+        (["cross", "case.toml", "--modes", "two"], "--modes: invalid int value: 'two'"),
+        (["cross", "case.toml", "--mod", "2"], "unrecognized arguments: --mod"),
+    ],
+)
+def test_a_bad_command(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    assert stop.value.code == 2
+    _, err = capsys.readouterr()
+    assert "\nspanwise: error: " in err
+    assert message in err
+
+
+@pytest.mark.parametrize("modes", ["0", "7", "-1"])
+def test_a_bad_number_of_modes(case: Path, capsys: pytest.CaptureFixture[str], modes: str) -> None:
+    assert main(["cross", str(case), f"--modes={modes}"]) == 2
+    assert f"modes = {modes}: must " in capsys.readouterr().err
+
+
+def test_numerical_failure(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(SOFT, encoding="utf-8")
+    assert main(["cross", str(case), "--json", str(case.parent / "run.json")]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("spanwise: error: the vehicle comes to rest")
+    assert left(case.parent) == set()
+
+
+def test_one_bad_place_and_nothing_is_written(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = tmp_path / "place"
+    place.write_text("taken", encoding="ascii")
+    outputs = ["--json", str(tmp_path / "run.json"), "--csv", str(place)]
+    assert main(["cross", str(case), *outputs]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err == f"spanwise: error: {place}: is a file, not a folder\n"
+    assert left(tmp_path) == {"place"}
+    outputs = [
+        "--csv",
+        str(tmp_path / "csv"),
+        "--json",
+        str(tmp_path / "csv" / "impact_factors.csv"),
+    ]
+    assert main(["cross", str(case), *outputs]) == 2
+    assert "two outputs have this name" in capsys.readouterr().err
+    assert left(tmp_path) == {"place"}
+
+
+def test_figures_need_matplotlib(
+    case: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["cross", str(case), "--plot", str(case.parent / "figures")]) == 2
+    assert "pip install 'spanwise[plot]'" in capsys.readouterr().err
+    assert left(case.parent) == set()
+
+
+# In a process of its own
+
+
+def test_as_a_module(case: Path) -> None:
+    command = [sys.executable, "-m", "spanwise", "cross", str(case)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "moment, sagging" in done.stdout
+    assert done.stderr == ""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes differ")
+def test_a_reader_that_goes_away(case: Path) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "spanwise", "cross", str(case)]
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(write)
+    assert done.stderr == ""
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_standard_output_that_is_full(case: Path) -> None:
+    command = [sys.executable, "-m", "spanwise", "cross", str(case)]
+    with Path("/dev/full").open("w", encoding="ascii") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("spanwise: error: standard output: No space left")
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+def test_interrupt(case: Path) -> None:
+    # A crossing of seconds, interrupted by the process itself soon after it has begun.
+    slow = CASE.replace("modes = 3", "modes = 6\nstep = 1e-6\nhistories = false")
+    case.write_text(slow, encoding="utf-8")
+    program = f"""
+        import os, signal, sys, threading
+        from spanwise.cli import main
+
+        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        sys.exit(main(["cross", {str(case)!r}, "--json", {str(case.parent / "run.json")!r}]))
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.stderr == "spanwise: interrupted\n"
+    assert done.returncode == 128 + signal.SIGINT
+    assert left(case.parent) == set()

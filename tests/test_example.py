@@ -1,0 +1,72 @@
+"""The example of 1973 runs, prints what it should and draws every figure, the same every time."""
+
+from __future__ import annotations
+
+import importlib.util
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+FIGURES = (
+    "fig01_bridge",
+    "fig02_vehicle",
+    "fig03_basic_bridge",
+    "fig04_model",
+    "fig05_modes",
+    "fig06_deflection",
+    "fig07a_sagging",
+    "fig07b_hogging",
+    "fig08_superposition",
+    "fig09_convergence",
+)
+
+
+def load() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("kishan_1973", EXAMPLES / "kishan_1973.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_example_prints_its_tables_and_draws_every_figure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "figures"
+    load().main(["--out", str(out)])
+    printed = capsys.readouterr().out
+    assert "2522.0, 2522.0, 2522.0, 2522.0, 2522.0, 2522.0" in printed
+    assert "K^R [lb/ft]: 130500, printed 130500" in printed
+    assert "nan" not in printed
+    expected = {f"{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
+    assert {path.name for path in out.iterdir()} == expected
+    for path in out.iterdir():
+        assert path.stat().st_size > 5000, path
+
+
+def test_figures_are_the_same_every_time(tmp_path: Path) -> None:
+    module = load()
+    case = sw.Case.read(EXAMPLES / "kishan_1973.toml")
+    for name in ("first", "second"):
+        module.save(case.run().plot.envelope("moment"), tmp_path / name)
+    for kind in ("png", "svg"):
+        first, second = ((tmp_path / f"{name}.{kind}").read_bytes() for name in ("first", "second"))
+        assert first == second
+
+
+def test_case_is_the_published_one_to_the_digits_given() -> None:
+    with (EXAMPLES / "kishan_1973.toml").open("rb") as file:
+        bridge = tomllib.load(file)["bridge"]
+    foot, pound = 0.3048, 4.4482216152605
+    # Nine digits or more are given.
+    np.testing.assert_allclose(bridge["spans"], [60.0 * foot] * 2, rtol=1e-12)
+    assert bridge["EI"] == pytest.approx(4.698e9 * pound * foot**2, rel=1e-9)
+    assert bridge["mass"] == pytest.approx(126.1 * pound / foot**2, rel=1e-9)

@@ -1,0 +1,336 @@
+"""Reports: JSON that computes the run again, CSV with all digits, frames, no half-written file."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_array_equal
+
+import spanwise as sw
+from spanwise._files import write_files
+from spanwise.report import as_dict
+
+QUANTITIES = ["deflection", "moment", "shear", "reactions", "axle_loads"]
+
+
+@pytest.fixture(scope="module")
+def run() -> sw.Run:
+    bridge = sw.Bridge(
+        spans=[12.0, 9.0],
+        ends=("clamped", "pinned"),
+        EI=[1.0e9, 0.8e9],
+        mass=4e3,
+        stations_per_span=3,
+        point_masses=[(5.0, 700.0)],
+    )
+    truck = sw.vehicles.kishan_1973().with_initial_friction(3e3, -2e3)
+    return sw.cross(bridge, truck, speed=20.0, modes=3, damping=0.02, tail=0.1, step=2e-3)
+
+
+@pytest.fixture(scope="module")
+def report(run: sw.Run) -> dict[str, Any]:
+    return run.to_dict()
+
+
+def again(settings: dict[str, Any]) -> sw.Run:
+    """The run that the settings of a report describe."""
+    vehicle = dict(settings["vehicle"])
+    axles = [
+        sw.Axle(**{**axle, "friction_limit": float(axle["friction_limit"])})
+        for axle in vehicle.pop("axles")
+    ]
+    return sw.cross(
+        sw.Bridge(**settings["bridge"]),
+        sw.Vehicle(**vehicle, axles=axles),
+        **settings["crossing"],
+    )
+
+
+def test_keys(report: dict[str, Any]) -> None:
+    assert set(report) == {
+        *("version", "settings", "sections", "supports", "frequencies", "final_speed", "steps"),
+        *("impact_factors", "clamp_moments", *QUANTITIES),
+    }
+    assert report["version"] == sw.__version__
+    assert set(report["settings"]) == {"bridge", "vehicle", "crossing"}
+    for quantity in (*QUANTITIES, "clamp_moments"):
+        assert set(report[quantity]) == {
+            f"{kind}{sense}{what}"
+            for kind in ("", "static_")
+            for sense in ("max", "min")
+            for what in ("", "_time", "_position", "_partner")
+        }
+
+
+def test_values(run: sw.Run, report: dict[str, Any]) -> None:
+    assert report["sections"] == run.sections.tolist()
+    assert report["supports"] == [0.0, 12.0, 21.0]
+    assert report["frequencies"] == run.frequencies.tolist()
+    assert report["final_speed"] == 20.0
+    assert report["steps"] == len(run.time) - 1
+    envelope = run.envelope("moment")
+    assert report["moment"]["max"] == envelope.max.value.tolist()
+    assert report["moment"]["max_time"] == envelope.max.time.tolist()
+    assert report["moment"]["static_min_position"] == envelope.static_min.position.tolist()
+    assert len(report["axle_loads"]["max"]) == 2
+    assert len(report["clamp_moments"]["min"]) == 1
+
+
+def test_clamp_moments_only_where_there_is_a_clamp() -> None:
+    bridge = sw.Bridge(spans=[12.0], EI=1e9, mass=4e3)
+    assert "clamp_moments" not in sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0).to_dict()
+
+
+def test_masked_factors_are_null(run: sw.Run, report: dict[str, Any]) -> None:
+    factors = report["impact_factors"]
+    assert factors["ratio"] == "extremes"
+    assert factors["mask"] == 0.05
+    for name in ("deflection", "sagging", "hogging", "shear", "reactions"):
+        masked = [factor is None for factor in factors[name]]
+        assert masked == factors["masked"][name]
+        assert masked == np.isnan(getattr(run.impact_factors, name)).tolist()
+    # The deflection over a support is nothing, statically and dynamically.
+    assert factors["deflection"][0] is None
+    assert None not in factors["axle_loads"]
+
+
+def test_the_settings_compute_the_run_again(run: sw.Run, report: dict[str, Any]) -> None:
+    same = again(json.loads(json.dumps(report["settings"])))
+    assert_array_equal(same.moment, run.moment)
+    assert_array_equal(same.shear, run.shear)
+    assert_array_equal(same.axle_loads, run.axle_loads)
+    assert same.settings == run.settings
+
+
+def test_json_is_strict(tmp_path: Path, run: sw.Run) -> None:
+    def refuse(name: str) -> None:
+        raise AssertionError(name)
+
+    path = tmp_path / "run.json"
+    run.to_json(path)
+    text = path.read_text(encoding="utf-8")
+    assert json.loads(text, parse_constant=refuse) == as_dict(run)
+
+
+def test_a_locked_suspension_is_written_and_read(tmp_path: Path) -> None:
+    locked = sw.Axle(
+        position=0.0,
+        tyre_stiffness=2e6,
+        suspension_stiffness=1e6,
+        friction_limit=float("inf"),
+    )
+    truck = sw.Vehicle(mass=10e3, pitch_inertia=1.0, axles=[locked])
+    bridge = sw.Bridge(spans=[12.0], EI=1e9, mass=4e3, stations_per_span=3)
+    matrix = np.diag([1e3, 2e3, 3e3])
+    run = sw.cross(bridge, truck, speed=20.0, modes=2, damping=matrix)
+    run.to_json(tmp_path / "run.json")
+    report = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    assert report["settings"]["vehicle"]["axles"][0]["friction_limit"] == "inf"
+    assert report["settings"]["crossing"]["damping"] == matrix.tolist()
+    assert_array_equal(again(report["settings"]).moment, run.moment)
+
+
+# CSV
+
+
+def rows(path: Path) -> tuple[list[str], list[list[str]]]:
+    with path.open(encoding="ascii", newline="") as file:
+        head, *body = csv.reader(file)
+    assert all(len(row) == len(head) for row in body)
+    return head, body
+
+
+def numbers(body: list[list[str]]) -> np.ndarray:
+    return np.array([[float(text) for text in row] for row in body])
+
+
+def test_csv_files(tmp_path: Path, run: sw.Run) -> None:
+    run.to_csv(tmp_path / "out")
+    quantities = [*QUANTITIES, "clamp_moments"]
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "impact_factors.csv",
+        "history_vehicle.csv",
+        *(f"{kind}_{quantity}.csv" for kind in ("envelope", "history") for quantity in quantities),
+    }
+
+
+def test_csv_of_a_run_without_histories(tmp_path: Path, run: sw.Run) -> None:
+    sw.cross(run.bridge, run.truck, speed=20.0, histories=False).to_csv(tmp_path)
+    names = {path.name for path in tmp_path.iterdir()}
+    assert {name.split("_")[0] for name in names} == {"impact", "envelope"}
+    assert len(names) == 7
+
+
+def test_histories_keep_all_digits(tmp_path: Path, run: sw.Run) -> None:
+    run.to_csv(tmp_path)
+    for quantity, first, values in (
+        ("deflection", "deflection at 0.0 m [m]", run.deflection),
+        ("moment", "moment at 0.0 m [N m]", run.moment),
+        ("reactions", "reaction at 0.0 m [N]", run.reactions),
+        ("clamp_moments", "clamp moment at 0.0 m [N m]", run.clamp_moments),
+        ("axle_loads", "load of axle 1 [N]", run.axle_loads),
+    ):
+        head, body = rows(tmp_path / f"history_{quantity}.csv")
+        assert head[:2] == ["time [s]", first]
+        assert_array_equal(numbers(body), np.column_stack([run.time, values]))
+    head, body = rows(tmp_path / "history_shear.csv")
+    assert head[1:3] == ["shear left of 0.0 m [N]", "shear right of 0.0 m [N]"]
+    assert_array_equal(numbers(body)[:, 1::2], run.shear_left)
+    assert_array_equal(numbers(body)[:, 2::2], run.shear_right)
+
+
+def test_history_of_the_vehicle(tmp_path: Path, run: sw.Run) -> None:
+    run.to_csv(tmp_path)
+    head, body = rows(tmp_path / "history_vehicle.csv")
+    columns = dict(zip(head, numbers(body).T, strict=True))
+    assert_array_equal(columns["time [s]"], run.time)
+    assert_array_equal(columns["heave acceleration [m/s2]"], run.vehicle.heave_acceleration)
+    assert_array_equal(columns["pitch [rad]"], run.vehicle.pitch)
+    assert_array_equal(columns["position of axle 2 [m]"], run.vehicle.axle_positions[:, 1])
+    assert_array_equal(columns["friction of axle 1 [N]"], run.vehicle.friction[:, 0])
+    assert len(head) == 1 + 9 + 3 * 2
+
+
+def test_envelopes(tmp_path: Path, run: sw.Run) -> None:
+    run.to_csv(tmp_path)
+    for quantity in (*QUANTITIES, "clamp_moments"):
+        envelope = run.envelope(quantity)  # type: ignore[arg-type]
+        head, body = rows(tmp_path / f"envelope_{quantity}.csv")
+        columns = dict(zip(head, numbers(body).T, strict=True))
+        unit = "N m" if "moment" in quantity else "m" if quantity == "deflection" else "N"
+        assert_array_equal(columns["axle" if quantity == "axle_loads" else "x [m]"], envelope.x)
+        assert_array_equal(columns[f"max [{unit}]"], envelope.max.value)
+        assert_array_equal(columns[f"max_partner [{unit}]"], envelope.max.partner)
+        assert_array_equal(columns["static_min_time [s]"], envelope.static_min.time)
+        assert_array_equal(columns["min_position [m]"], envelope.min.position)
+
+
+def test_impact_factors(tmp_path: Path, run: sw.Run) -> None:
+    run.to_csv(tmp_path)
+    head, body = rows(tmp_path / "impact_factors.csv")
+    assert head == ["of", "x [m]", "axle"] + [
+        f"{name} [-]"
+        for name in ("deflection", "sagging", "hogging", "shear", "reaction", "axle load")
+    ]
+    kinds = [row[0] for row in body]
+    assert kinds == ["section"] * len(run.sections) + ["support"] * 3 + ["axle"] * 2
+    factors = run.impact_factors
+    sagging = [float(row[4] or "nan") for row in body if row[0] == "section"]
+    assert_array_equal(sagging, factors.sagging)
+    reactions = [(float(row[1]), float(row[7])) for row in body if row[0] == "support"]
+    assert_array_equal(reactions, np.column_stack([factors.supports, factors.reactions]))
+    loads = [(int(row[2]), float(row[8])) for row in body if row[0] == "axle"]
+    assert loads == [*enumerate(factors.axle_loads, 1)]
+
+
+# Frames
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name"),
+    [
+        ("deflection", "x [m]"),
+        ("moment", "x [m]"),
+        ("reactions", "support [m]"),
+        ("clamp_moments", "clamp [m]"),
+        ("axle_loads", "axle"),
+    ],
+)
+def test_frames(run: sw.Run, quantity: Any, name: str) -> None:
+    frame = run.to_pandas(quantity)
+    assert_array_equal(frame.to_numpy(), getattr(run, quantity))
+    assert_array_equal(frame.index, run.time)
+    assert frame.index.name == "time [s]"
+    assert frame.columns.name == name
+    assert_array_equal(frame.columns, run.envelope(quantity).x)
+
+
+def test_frame_of_shears_has_both_sides(run: sw.Run) -> None:
+    frame = run.to_pandas("shear")
+    assert isinstance(frame.columns, pd.MultiIndex)
+    assert frame.columns.names == ["x [m]", "side"]
+    right = frame.xs("right", axis="columns", level="side")
+    assert_array_equal(right.to_numpy(), run.shear_right)
+
+
+def test_frame_of_nothing(run: sw.Run) -> None:
+    with pytest.raises(ValueError, match="quantity = 'time': must be one of deflection, moment"):
+        run.to_pandas("time")  # type: ignore[arg-type]
+
+
+def test_pandas_is_asked_for_by_name(run: sw.Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match=r"pip install 'spanwise\[pandas\]'"):
+        run.to_pandas()
+
+
+# Files
+
+
+def failing() -> Iterator[bytes]:
+    yield b"half"
+    raise RuntimeError("the other half")
+
+
+def test_nothing_is_left_half_written(tmp_path: Path) -> None:
+    old, new = tmp_path / "old.csv", tmp_path / "a" / "b" / "new.csv"
+    old.write_bytes(b"as it was")
+    with pytest.raises(RuntimeError, match="the other half"):
+        write_files([(old, [b"first"]), (new, failing())], folders=[new.parent])
+    assert old.read_bytes() == b"as it was"
+    assert [path.name for path in tmp_path.iterdir()] == ["old.csv"]
+
+
+def test_files_are_replaced_and_folders_made(tmp_path: Path) -> None:
+    old, new = tmp_path / "old.csv", tmp_path / "a" / "b" / "new.csv"
+    old.write_bytes(b"as it was")
+    write_files([(old, [b"one", b"two"]), (new, [])], folders=[new.parent])
+    assert old.read_bytes() == b"onetwo"
+    assert new.read_bytes() == b""
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["a", "b", "new.csv", "old.csv"]
+
+
+def test_links_are_followed(tmp_path: Path) -> None:
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_bytes(b"old")
+    link.symlink_to(target)
+    write_files([(link, [b"new"])])
+    assert link.is_symlink()
+    assert target.read_bytes() == b"new"
+
+
+def test_the_same_file_twice(tmp_path: Path) -> None:
+    same = tmp_path / "x" / ".." / "a"
+    (tmp_path / "x").mkdir()
+    with pytest.raises(FileExistsError, match="two outputs have this name"):
+        write_files([(tmp_path / "a", [b"1"]), (same, [b"2"])])
+    assert not (tmp_path / "a").exists()
+
+
+def test_places_where_no_file_can_be(tmp_path: Path, run: sw.Run) -> None:
+    (tmp_path / "file").write_text("old", encoding="ascii")
+    with pytest.raises(NotADirectoryError, match="is a file, not a folder"):
+        run.to_csv(tmp_path / "file")
+    with pytest.raises(NotADirectoryError, match="is a file, not a folder"):
+        run.to_csv(tmp_path / "file" / "below")
+    with pytest.raises(IsADirectoryError, match="is a folder, not a file"):
+        run.to_json(tmp_path)
+    with pytest.raises(FileNotFoundError, match="no such folder"):
+        run.to_json(tmp_path / "nowhere" / "run.json")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    assert (tmp_path / "file").read_text(encoding="ascii") == "old"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such devices")
+def test_devices_are_not_replaced(run: sw.Run) -> None:
+    with pytest.raises(OSError, match="is a device or pipe"):
+        run.to_json("/dev/null")
+    assert not Path("/dev/null").is_file()
