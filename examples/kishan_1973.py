@@ -237,7 +237,7 @@ def convergence(case: sw.Case) -> Figure:
             stations_per_span=10,
         ),
     )
-    reference = fine.run(modes=20, sections=SECTIONS, histories=False)
+    reference = fine.run(modes=20, sections=SECTIONS)
     quantities: tuple[sw.run.Quantity, ...] = ("deflection", "moment", "shear")
     methods = {"force summation": "force-summation", "direct superposition": "superposition"}
     modes = range(1, 21)
@@ -251,7 +251,6 @@ def convergence(case: sw.Case) -> Figure:
                 recovery=recovery,
                 sections=SECTIONS,
                 step=reference.settings["step"],
-                histories=False,
             )
             for quantity in quantities:
                 errors[quantity][name].append(relative_error(run, reference, quantity))

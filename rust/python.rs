@@ -410,7 +410,13 @@ mod _core {
             match name {
                 "axle_loads" => Ok(self.outcome.axle_loads.clone()),
                 "shear" => Ok(self.analysis.envelope_of(&self.outcome, Quantity::ShearLeft)),
-                _ => Ok(self.analysis.envelope_of(&self.outcome, quantity(name)?)),
+                "deflection" | "moment" | "reactions" | "clamp_moments" => {
+                    Ok(self.analysis.envelope_of(&self.outcome, quantity(name)?))
+                }
+                _ => {
+                    let allowed = "must be deflection, moment, shear, reactions, clamp_moments or axle_loads";
+                    Err(Error::input("quantity", format!("\"{name}\""), allowed))
+                }
             }
         }
     }

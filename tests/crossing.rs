@@ -48,11 +48,6 @@ fn orders_of_state(vehicle: &Vehicle, drive: Drive, beta: f64, feet: usize) -> V
     differences.windows(2).map(|w| (w[0] / w[1]).log2()).collect()
 }
 
-/// The spring of every axle is linear in these: friction holds for ever, or there is none.
-fn linear_vehicles() -> [Vehicle; 2] {
-    [f64::INFINITY, 0.0].map(kishan_vehicle_with_friction)
-}
-
 #[test]
 fn second_order_at_constant_speed() {
     for vehicle in linear_vehicles() {

@@ -4,7 +4,6 @@ mod problems;
 
 use problems::*;
 use spanwise::crossing::Drive::ConstantTraction;
-use spanwise::vehicle::Vehicle;
 
 const GRAVITY: f64 = 9.806_65;
 
@@ -22,11 +21,6 @@ const GAIN: f64 = 1e-7;
 
 /// From the second axle on the bridge to the first at the middle support, and the like in the second span [ft].
 const BETWEEN_SUPPORTS: [[usize; 2]; 2] = [[15, 59], [75, 119]];
-
-/// The spring of every axle is linear in these: friction holds for ever, or there is none.
-fn linear_vehicles() -> [Vehicle; 2] {
-    [f64::INFINITY, 0.0].map(kishan_vehicle_with_friction)
-}
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)

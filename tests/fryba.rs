@@ -3,6 +3,7 @@
 
 mod problems;
 
+use problems::answers::{MovingForce, moving_forces};
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::crossing::{Damping, Settings};

@@ -2,6 +2,7 @@
 
 mod problems;
 
+use problems::answers::uniform_bridges;
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::error::Error;

@@ -205,8 +205,6 @@ CROSSINGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"sections": [9.0, 5.0]}, ("sections[1]", "5 m", "greater than", "9 m")),
     ({"sections": [9.0, 9.0]}, ("sections[1]", "9 m", "greater than")),
     ({"sections": np.linspace(0.0, 36.0, 20_001)}, ("sections", "20001", "1 to 20000")),
-    ({"histories": "no"}, ("histories", "'no'", "true or false")),
-    ({"histories": None}, ("histories", "None", "true or false")),
 ]
 
 EVERYTHING = [*BRIDGES, *VEHICLES, *((cross, given, parts) for given, parts in CROSSINGS)]
@@ -294,7 +292,6 @@ def test_numpy_is_welcome() -> None:
         "damping": np.full(3, 0.01),
         "sections": np.array([4, 9]),
         "step": np.array(0.001),
-        "histories": np.bool_(False),
     }
     run = sw.cross(bridge, vehicle(mass=np.int32(20_000)), **given)  # type: ignore[arg-type]
     same = sw.Bridge(
@@ -342,9 +339,7 @@ def test_influence_lines(quantity: Any, at: Any, x: Any, parts: tuple[str, ...])
 
 
 def test_results_that_do_not_exist() -> None:
-    run = cross(histories=False)
-    with pytest.raises(ValueError, match=r"histories were not kept: call cross\(.*True"):
-        _ = run.moment
+    run = cross()
     with pytest.raises(ValueError, match=r'quantity = "moments": must be deflection, moment'):
         run.envelope("moments")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r'ratio = "max": must be extremes'):
@@ -384,11 +379,12 @@ def test_average_acceleration_has_no_stability_limit() -> None:
 
 
 def test_histories_that_would_not_fit_are_refused() -> None:
-    # 4 x 300 responses at 180 000 instants, dynamic and static, are more than 3 GB.
-    given = {"sections": np.linspace(0.0, 36.0, 300), "step": 1e-5}
-    with pytest.raises(ValueError, match=r"histories = true: .*histories = false") as caught:
-        cross(**given)
-    assert "GB" in str(caught.value)
+    # Moments in 700 sections at 200 001 instants, dynamic and static, are 2.24 GB.
+    run = cross(sections=np.linspace(0.0, 36.0, 700), step=1e-5, modes=1)
+    with pytest.raises(ValueError, match=r"sections = 700 positions at 200001 .*2\.2 GB") as caught:
+        _ = run.moment
+    assert "use fewer sections or a longer step" in str(caught.value)
+    assert run.reactions.shape[1] == 3
 
 
 def fresh(code: str) -> dict[str, float]:

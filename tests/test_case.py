@@ -122,7 +122,6 @@ def test_every_argument_is_a_key() -> None:
         "beta": "0.25",
         "gravity": "9.8",
         "mask": "0.1",
-        "histories": "false",
     }
     arguments = list(inspect.signature(sw.cross).parameters)[2:]
     assert list(given) == arguments
@@ -218,6 +217,7 @@ REFUSED = [
         BRIDGE + VEHICLE + CROSSING + "sped = 1",
         r"'sped' \(did you mean 'speed'\?\); allowed: speed,",
     ),
+    (BRIDGE + VEHICLE + CROSSING + "DRIVE = 1", r"'DRIVE' \(did you mean 'drive'\?\)"),
     (BRIDGE + VEHICLE + CROSSING + "EI = 1", r"unknown key 'EI' \(belongs in \[bridge\]\)"),
     (BRIDGE + VEHICLE + CROSSING + "bridge = 1", r"unknown key 'bridge'; allowed: speed"),
     # TOML

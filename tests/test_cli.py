@@ -79,7 +79,7 @@ def test_summary_of_every_kind_of_case(tmp_path: Path, capsys: pytest.CaptureFix
     case.write_text(
         CASE.replace("spans = [18.288, 18.288]", "spans = [18.0]")
         .replace("= 3\n[v", '= 2\nends = ["clamped", "pinned"]\n[v')
-        .replace("modes = 3", f"modes = 2\nhistories = false\ndamping = {matrix}"),
+        .replace("modes = 3", f"modes = 2\ndamping = {matrix}"),
         encoding="utf-8",
     )
     assert main(["cross", str(case)]) == 0
@@ -258,7 +258,7 @@ def test_standard_output_that_is_full(case: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
 def test_interrupt(case: Path) -> None:
     # A crossing of seconds, interrupted by the process itself soon after it has begun.
-    slow = CASE.replace("modes = 3", "modes = 6\nstep = 1e-6\nhistories = false")
+    slow = CASE.replace("modes = 3", "modes = 6\nstep = 1e-6")
     case.write_text(slow, encoding="utf-8")
     program = f"""
         import os, signal, sys, threading

@@ -32,7 +32,10 @@ def run() -> sw.Run:
         point_masses=[(5.0, 700.0)],
     )
     truck = sw.vehicles.kishan_1973().with_initial_friction(3e3, -2e3)
-    return sw.cross(bridge, truck, speed=20.0, modes=3, damping=0.02, tail=0.1, step=2e-3)
+    # More steps than are turned into CSV text at a time.
+    run = sw.cross(bridge, truck, speed=20.0, modes=3, damping=0.02, tail=0.1, step=1e-3)
+    assert run.steps > 1000
+    return run
 
 
 @pytest.fixture(scope="module")
@@ -160,13 +163,6 @@ def test_csv_files(tmp_path: Path, run: sw.Run) -> None:
         "history_vehicle.csv",
         *(f"{kind}_{quantity}.csv" for kind in ("envelope", "history") for quantity in quantities),
     }
-
-
-def test_csv_of_a_run_without_histories(tmp_path: Path, run: sw.Run) -> None:
-    sw.cross(run.bridge, run.truck, speed=20.0, histories=False).to_csv(tmp_path)
-    names = {path.name for path in tmp_path.iterdir()}
-    assert {name.split("_")[0] for name in names} == {"impact", "envelope"}
-    assert len(names) == 7
 
 
 def test_histories_keep_all_digits(tmp_path: Path, run: sw.Run) -> None:

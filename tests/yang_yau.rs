@@ -3,6 +3,7 @@
 
 mod problems;
 
+use problems::answers::YangYau;
 use problems::*;
 use spanwise::crossing::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};

@@ -49,11 +49,10 @@ def csv_files(run: Run) -> Iterator[tuple[str, Iterator[bytes]]]:
     yield "impact_factors.csv", _csv(_impact_factor_rows(run))
     for quantity in quantities(run):
         yield f"envelope_{quantity}.csv", _csv(_envelope_rows(run, quantity))
-    if run._kept:
-        for quantity in quantities(run):
-            rows = _history_rows(run, _labels(run, quantity), history(run, quantity))
-            yield f"history_{quantity}.csv", _csv(rows)
-        yield "history_vehicle.csv", _csv(_history_rows(run, *_motion(run)))
+    for quantity in quantities(run):
+        rows = _history_rows(run, _labels(run, quantity), history(run, quantity))
+        yield f"history_{quantity}.csv", _csv(rows)
+    yield "history_vehicle.csv", _csv(_history_rows(run, *_motion(run)))
 
 
 def _csv(rows: Iterable[Row]) -> Iterator[bytes]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import array, count, flag, number, numbers, shown, word
+from spanwise._checks import array, count, number, numbers, shown, word
 from spanwise.bridge import Bridge
 from spanwise.run import Run
 from spanwise.vehicles import GRAVITY, Vehicle
@@ -34,7 +34,6 @@ def cross(
     beta: float = 1.0 / 6.0,
     gravity: float = GRAVITY,
     mask: float = 0.05,
-    histories: bool = True,
 ) -> Run:
     """Drive a vehicle over a bridge once.
 
@@ -79,8 +78,6 @@ def cross(
     mask : float, optional
         Impact factors are not given where the static value is at most this fraction of the largest
         along the bridge.
-    histories : bool, optional
-        Keep the responses at every instant beside their extremes.
 
     Returns
     -------
@@ -125,7 +122,7 @@ def cross(
         "gravity": number("gravity", gravity),
         "mask": number("mask", mask),
     }
-    core, arrays = _core.cross(
+    core = _core.cross(
         bridge._core,
         vehicle._core,
         speed=number("speed", speed),
@@ -140,10 +137,9 @@ def cross(
         gravity=number("gravity", gravity),
         sections=None if sections is None else numbers("sections", sections),
         recovery=recovery_word,
-        histories=flag("histories", histories),
     )
-    settings["step"] = arrays["step"]
-    return Run(bridge, vehicle, settings, core, arrays)
+    settings["step"] = core.step
+    return Run(bridge, vehicle, settings, core)
 
 
 def _damping(damping: ArrayLike) -> tuple[list[float], NDArray[np.float64] | None]:

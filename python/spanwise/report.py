@@ -68,9 +68,9 @@ def write_json(run: Run, path: str | Path) -> None:
 def write_csv(run: Run, directory: str | Path) -> None:
     """Write impact factors, extremes and histories into a folder, which is made if there is none.
 
-    The files are ``impact_factors.csv``, ``envelope_<quantity>.csv`` and, if the run kept its
-    histories, ``history_<quantity>.csv`` and ``history_vehicle.csv``. Their first row names the
-    columns and units; numbers have a decimal point and all their digits.
+    The files are ``impact_factors.csv``, ``envelope_<quantity>.csv``, ``history_<quantity>.csv``
+    and ``history_vehicle.csv``. Their first row names the columns and units; numbers have a decimal
+    point and all their digits.
 
     Raises
     ------

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -91,59 +91,47 @@ class Responses:
     Attributes are ``deflection`` [m], ``moment`` [N m], ``shear`` [N] with a last axis for the left
     and the right side of each section, ``shear_left``, ``shear_right``, ``reactions``
     (time, support) [N] and ``clamp_moments`` (time, clamp) [N m]. Deflections are down, moments
-    sagging, shears sums of the upward forces to the left, reactions up.
+    sagging, shears sums of the upward forces to the left, reactions up. They are computed from the
+    states of the crossing when first asked for.
     """
 
-    def __init__(self, values: Array, ranges: Mapping[str, tuple[int, int]], what: str) -> None:
-        self._values, self._ranges, self._what = values, ranges, what
-
-    @property
-    def _kept(self) -> bool:
-        return self._values.size > 0
-
-    def _columns(self, first: str, last: str | None = None) -> Array:
-        if not self._kept:
-            raise ValueError(
-                f"{self._what} histories were not kept: call cross(..., histories=True)"
-            )
-        start, stop = self._ranges[first][0], self._ranges[last or first][1]
-        return self._values[:, start:stop]
+    def __init__(self, histories: Callable[[str], Array]) -> None:
+        self._histories = histories
 
     @property
     def deflection(self) -> Array:
         """Deflections down [m], shape (time, section)."""
-        return self._columns("deflection")
+        return self._histories("deflection")
 
     @property
     def moment(self) -> Array:
         """Bending moments, sagging positive [N m], shape (time, section)."""
-        return self._columns("moment")
+        return self._histories("moment")
 
     @property
     def shear_left(self) -> Array:
         """Shear just left of the sections [N], shape (time, section)."""
-        return self._columns("shear_left")
+        return self._histories("shear_left")
 
     @property
     def shear_right(self) -> Array:
         """Shear just right of the sections [N], shape (time, section)."""
-        return self._columns("shear_right")
+        return self._histories("shear_right")
 
     @property
     def shear(self) -> Array:
         """Shear just left and just right of the sections [N], shape (time, section, 2)."""
-        both = self._columns("shear_left", "shear_right")
-        return both.reshape(len(both), 2, -1).transpose(0, 2, 1)
+        return np.stack([self.shear_left, self.shear_right], axis=-1)
 
     @property
     def reactions(self) -> Array:
         """Support reactions, up [N], shape (time, support)."""
-        return self._columns("reactions")
+        return self._histories("reactions")
 
     @property
     def clamp_moments(self) -> Array:
         """Moments of the clamped ends, sagging positive [N m], shape (time, clamp)."""
-        return self._columns("clamp_moments")
+        return self._histories("clamp_moments")
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,22 +196,14 @@ class Run(Responses):
         The vehicle.
     settings : dict
         The settings used, defaults filled in.
-    time : ndarray, shape (time,)
-        Time since the front axle was at the start of the approach [s].
     sections : ndarray, shape (section,)
         Where responses are looked at [m].
     frequencies : ndarray, shape (mode,)
         Natural frequencies of the included modes [Hz].
-    axle_loads : ndarray, shape (time, axle)
-        Axle loads [N].
     static_axle_loads : ndarray, shape (axle,)
         Static axle loads [N].
     static : Responses
         Responses to the static axle loads at the same positions.
-    vehicle : VehicleMotion
-        The motion of the vehicle.
-    modal : ModalMotion
-        The motion of the bridge in modal coordinates.
     final_speed : float
         Speed at the end [m/s].
     steps : int
@@ -236,24 +216,38 @@ class Run(Responses):
         truck: Vehicle,
         settings: dict[str, object],
         core: _core.Crossing,
-        arrays: Mapping[str, Any],
     ) -> None:
-        super().__init__(arrays["dynamic"], arrays["ranges"], "dynamic")
+        both = cache(core.histories)
+        super().__init__(lambda name: both(name)[0])
+        self.static = Responses(lambda name: both(name)[1])
         self._core = core
         self.bridge, self.truck, self.settings = bridge, truck, settings
-        self.time: Array = arrays["time"]
-        self.sections: Array = arrays["sections"]
-        self.frequencies: Array = arrays["omega"] / (2.0 * np.pi)
-        self.axle_loads: Array = arrays["axle_loads"]
-        self.static_axle_loads: Array = arrays["static_loads"]
-        self.static = Responses(arrays["static"], arrays["ranges"], "static")
-        self.vehicle = VehicleMotion(
-            *arrays["body"].T,
-            *(arrays[name] for name in ("positions", "suspension_shortenings", "friction")),
-        )
-        self.modal = ModalMotion(arrays["a"], arrays["a_dot"], arrays["a_ddot"])
-        self.final_speed: float = arrays["final_speed"]
-        self.steps: int = len(self.time) - 1
+        self.sections: Array = core.sections
+        self.frequencies: Array = core.omega / (2.0 * np.pi)
+        self.static_axle_loads: Array = core.static_loads
+        self.final_speed: float = core.final_speed
+        self.steps: int = core.steps
+
+    @cached_property
+    def time(self) -> Array:
+        """Time since the front axle was at the start of the approach [s], shape (time,)."""
+        return self._core.states("time").ravel()
+
+    @cached_property
+    def axle_loads(self) -> Array:
+        """Axle loads [N], shape (time, axle)."""
+        return self._core.states("axle_loads")
+
+    @cached_property
+    def vehicle(self) -> VehicleMotion:
+        """The motion of the vehicle."""
+        axles = ("positions", "suspension_shortenings", "friction")
+        return VehicleMotion(*self._core.states("body").T, *map(self._core.states, axles))
+
+    @cached_property
+    def modal(self) -> ModalMotion:
+        """The motion of the bridge in modal coordinates."""
+        return ModalMotion(*map(self._core.states, ("coordinates", "velocities", "accelerations")))
 
     def __repr__(self) -> str:
         return (
