@@ -16,7 +16,8 @@ fn kishan_1973(c: &mut Criterion) {
     let bridge = kishan_bridge();
     let vehicle = kishan_vehicle();
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let prepare = || Analysis::new(&bridge, modes.clone(), &undamped(), None, Recovery::ForceSummation).unwrap();
+    let prepare =
+        || Analysis::new(&bridge, modes.clone(), &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
     let analysis = prepare();
     let rolling = Settings { drive: Drive::ConstantTraction, step: Some(1e-3), ..Settings::at_speed(22.86) };
     let steady = Settings { drive: Drive::ConstantSpeed, ..rolling.clone() };

@@ -13,8 +13,8 @@ use crate::vehicle::Vehicle;
 /// Most memory that the histories of one quantity may take [bytes].
 pub const MAX_HISTORY_BYTES: usize = 2 << 30;
 
-/// Most sections looked at.
-pub const MAX_SECTIONS: usize = 20_000;
+/// Most sections looked at: their influence lines take memory with the square of the number.
+pub const MAX_SECTIONS: usize = 2000;
 
 /// A bridge with everything that does not depend on the vehicle, worked out once.
 #[derive(Debug, Clone)]
@@ -41,15 +41,16 @@ impl Analysis {
         damping: &Damping,
         sections: Option<&[f64]>,
         recovery: Recovery,
+        go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, Error> {
         let sections = match sections {
             Some(sections) => checked_sections(sections, bridge.length())?,
-            None => bridge.default_sections(),
+            None => checked_sections(&bridge.default_sections(), bridge.length())?,
         };
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
-        let responses = Responses::new(&flexibility, bridge, &sections);
+        let responses = Responses::new(&flexibility, bridge, &sections, go_on)?;
         let rows = Rows::new(bridge, &responses, &modes, &lines, flexibility.mesh(), (damping, &model), recovery);
         Ok(Analysis { sections, flexibility, modes, model, responses, rows })
     }

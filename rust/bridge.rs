@@ -3,7 +3,7 @@
 use crate::error::{Error, finite, not_negative, positive};
 
 /// Most stations a bridge may have: F is a dense matrix of this order, and its eigensolution grows with the cube.
-pub const MAX_STATIONS: usize = 5000;
+pub const MAX_STATIONS: usize = 2000;
 
 /// Two points closer than this fraction of the length are one point.
 pub const COINCIDENT: f64 = 1e-9;
@@ -77,13 +77,15 @@ impl Bridge {
         bounds.push(length);
         let spans = bounds.len() - 1;
 
+        let given = flexural_rigidity.len();
         let flexural_rigidity = per_span("EI", flexural_rigidity, spans)?;
         for (i, &ei) in flexural_rigidity.iter().enumerate() {
-            positive(indexed("EI", i, spans), ei)?;
+            positive(indexed("EI", i, given), ei)?;
         }
+        let given = mass.len();
         let mass = per_span("mass", mass, spans)?;
         for (i, &m) in mass.iter().enumerate() {
-            not_negative(indexed("mass", i, spans), m)?;
+            not_negative(indexed("mass", i, given), m)?;
         }
 
         let mut lumps = match stations {
@@ -99,14 +101,19 @@ impl Bridge {
             }
         }
         if lumps.len() > MAX_STATIONS {
-            return Err(too_many(lumps.len()));
+            return Err(too_many("stations", lumps.len()));
         }
         lumps.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let total: f64 = lumps.iter().map(|s| s.mass).sum();
         let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near);
         // A mass over a support does not move: it takes no part in the dynamics.
         lumps.retain(|s| s.mass > 0.0 && !held(s.at));
         if lumps.is_empty() {
-            return Err(Error::input("mass", "0", "at least one station off the supports must carry mass"));
+            let allowed = "at least one station off the supports must carry mass";
+            return Err(match total > 0.0 {
+                true => Error::input("stations", "all on supports", allowed),
+                false => Error::input("mass", 0, allowed),
+            });
         }
         Ok(Bridge { length, supports, bounds, flexural_rigidity, stations: lumps })
     }
@@ -135,6 +142,10 @@ impl Bridge {
             x += span;
         }
         finite("spans", x)?;
+        if let Some((i, span)) = spans.iter().enumerate().find(|(_, span)| **span <= COINCIDENT * x) {
+            let allowed = format!("too short beside the whole length of {x:e} m");
+            return Err(Error::input(format!("spans[{i}]"), format!("{span:e} m"), allowed));
+        }
         supports.extend(ends[1].map(|fixity| Support { at: x, fixity }));
         Bridge::new(x, supports, flexural_rigidity, mass, stations, point_masses)
     }
@@ -237,8 +248,8 @@ fn on_the_bridge(key: &str, at: f64, length: f64) -> Result<(), Error> {
     }
 }
 
-fn too_many(count: usize) -> Error {
-    Error::input("stations", format!("{count} stations"), format!("at most {MAX_STATIONS} mass stations in all"))
+fn too_many(key: &str, count: usize) -> Error {
+    Error::input(key, format!("{count} stations"), format!("at most {MAX_STATIONS} mass stations in all"))
 }
 
 fn indexed(key: &str, i: usize, n: usize) -> String {
@@ -271,7 +282,7 @@ fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<St
     let count_of = |span: usize| if counts.len() == 1 { counts[0] } else { counts[span] };
     let total = (0..spans).fold(0_usize, |sum, span| sum.saturating_add(count_of(span)));
     if total > MAX_STATIONS {
-        return Err(too_many(total));
+        return Err(too_many("stations_per_span", total));
     }
     let mut stations = Vec::with_capacity(total);
     for span in 0..spans {
@@ -292,7 +303,7 @@ fn tributary_shares(bounds: &[f64], mass: &[f64], positions: &[f64]) -> Result<V
     let length = bounds[bounds.len() - 1];
     let near = COINCIDENT * length;
     if positions.len() > MAX_STATIONS {
-        return Err(too_many(positions.len()));
+        return Err(too_many("stations", positions.len()));
     }
     for (i, &at) in positions.iter().enumerate() {
         on_the_bridge(&format!("stations[{i}]"), at, length)?;

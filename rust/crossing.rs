@@ -194,15 +194,15 @@ impl Settings {
         }
         // A path of a whole number of steps is not given one more because of rounding.
         let count = (path / (self.speed * longest) - 1e-9).ceil().max(1.0);
-        if count + self.tail / longest > MAX_STEPS as f64 {
+        let steps = count + self.tail / longest;
+        if steps > MAX_STEPS as f64 {
             let (key, value) = match self.step {
-                Some(step) => ("step", format!("{step} s")),
-                None => ("speed", format!("{} m/s", self.speed)),
+                _ if self.tail / longest > 0.5 * steps => ("tail", format!("{:e} s", self.tail)),
+                _ if self.approach > 0.5 * path => ("approach", format!("{:e} m", self.approach)),
+                Some(step) => ("step", format!("{step:e} s")),
+                None => ("speed", format!("{:e} m/s", self.speed)),
             };
-            let allowed = format!(
-                "the crossing would take {:.3e} steps, at most {MAX_STEPS} are allowed",
-                count + self.tail / longest
-            );
+            let allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
             return Err(Error::input(key, value, allowed));
         }
         Ok((path / (self.speed * count), count as usize))

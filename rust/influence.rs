@@ -4,6 +4,7 @@
 //! deflection, a unit kink for a moment, a unit jump for a shear, a unit settlement for a reaction. All are exact.
 
 use crate::bridge::Bridge;
+use crate::error::Error;
 use crate::flexibility::{Action, Flexibility, Restraint, Structure};
 use crate::line::Line;
 
@@ -101,8 +102,13 @@ pub struct Responses {
 }
 
 impl Responses {
-    /// At `sections` [m], which must be nodes of the flexibility's mesh.
-    pub fn new(flexibility: &Flexibility, bridge: &Bridge, sections: &[f64]) -> Self {
+    /// At `sections` [m], which must be nodes of the flexibility's mesh; `go_on` is asked at each whether to.
+    pub fn new(
+        flexibility: &Flexibility,
+        bridge: &Bridge,
+        sections: &[f64],
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, Error> {
         let mesh = flexibility.mesh();
         let sections: Vec<usize> = sections.iter().map(|&x| mesh.node_at(x)).collect();
         let vertical: Vec<Restraint> =
@@ -111,14 +117,18 @@ impl Responses {
             flexibility.outer_restraints().into_iter().filter(|r| matches!(r, Restraint::Slope(_))).collect();
 
         let actual = Structure::Actual;
-        let mut lines: Vec<Line> = sections.iter().map(|&node| deflection(flexibility, node, actual)).collect();
-        lines.extend(sections.iter().map(|&node| moment(flexibility, node, actual)));
-        let (left, right): (Vec<Line>, Vec<Line>) =
-            sections.iter().map(|&node| shear(flexibility, node, actual).into()).unzip();
-        lines.extend(left);
-        lines.extend(right);
+        let mut by_quantity: [Vec<Line>; 4] = Default::default();
+        for &node in &sections {
+            let [left, right] = shear(flexibility, node, actual);
+            let lines = [deflection(flexibility, node, actual), moment(flexibility, node, actual), left, right];
+            by_quantity.iter_mut().zip(lines).for_each(|(of_quantity, line)| of_quantity.push(line));
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+        }
+        let mut lines: Vec<Line> = by_quantity.into_iter().flatten().collect();
         lines.extend(vertical.iter().chain(&clamps).map(|&r| reaction(flexibility, r, actual)));
-        Responses { sections, restraints: [vertical, clamps], lines }
+        Ok(Responses { sections, restraints: [vertical, clamps], lines })
     }
 
     /// Nodes of the sections.

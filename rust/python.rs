@@ -84,7 +84,7 @@ impl Solved {
         Solved { bridge, modes: Mutex::new(None), analysis: Mutex::new(None) }
     }
 
-    fn analysis(&self, asked: Asked) -> Result<Arc<Analysis>, Error> {
+    fn analysis(&self, asked: Asked, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Analysis>, Error> {
         let mut kept = self.analysis.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((for_what, analysis)) = kept.as_ref()
             && *for_what == asked
@@ -93,7 +93,7 @@ impl Solved {
         }
         let modes = self.modes(asked.modes)?;
         let sections = asked.sections.as_deref();
-        let analysis = Arc::new(Analysis::new(&self.bridge, modes, &asked.damping, sections, asked.recovery)?);
+        let analysis = Arc::new(Analysis::new(&self.bridge, modes, &asked.damping, sections, asked.recovery, go_on)?);
         *kept = Some((asked, Arc::clone(&analysis)));
         Ok(analysis)
     }
@@ -138,6 +138,13 @@ mod _core {
     #[pymodule_export]
     #[allow(non_upper_case_globals)] // the name as Python sees it
     const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // NumPy's interface is looked up when first used; done now, no pending signal can get in the way.
+        let _ = PyArray1::<f64>::zeros(module.py(), 0, false);
+        Ok(())
+    }
 
     /// Row-major values as a two-dimensional array, without a copy.
     fn rows<'py>(py: Python<'py>, values: Vec<f64>, width: usize) -> PyResult<Matrix<'py>> {
@@ -579,7 +586,7 @@ mod _core {
         };
         let settings = Settings { speed, drive, beta, step, approach, tail, gravity };
         let (analysis, outcome) = interruptible(py, |go_on| {
-            let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery })?;
+            let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery }, go_on)?;
             let outcome = analysis.cross(&vehicle.0, &settings, go_on)?;
             Ok((analysis, outcome))
         })?;

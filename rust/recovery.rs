@@ -176,18 +176,19 @@ impl Rows {
             }
             _ => Vec::new(),
         };
-        let of_response = |(r, influence): (usize, &Line)| {
+        let row = n.div_ceil(WIDTH);
+        let mut lines = vec![[[0.0; WIDTH]; 4]; mesh.panels() * row];
+        for (r, influence) in responses.lines().iter().enumerate() {
             let mut line = influence.clone();
             for (i, shape) in static_shapes.iter().enumerate() {
                 line.add_scaled(-rho(r, i), shape);
             }
-            line
-        };
-        let each: Vec<Line> = responses.lines().iter().enumerate().map(of_response).collect();
-        let lines = (0..mesh.panels())
-            .flat_map(|panel| (0..n.div_ceil(WIDTH)).map(move |b| (panel, b)))
-            .map(|(panel, b)| std::array::from_fn(|power| block(n, b, |r| each[r].cubics()[panel][power])))
-            .collect();
+            for (panel, cubic) in line.cubics().iter().enumerate() {
+                for (power, c) in cubic.iter().enumerate() {
+                    lines[panel * row + r / WIDTH][power][r % WIDTH] = *c;
+                }
+            }
+        }
         Rows { responses: n, mesh: mesh.clone(), recovery, width, factors, lines, static_shapes }
     }
 

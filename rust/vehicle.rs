@@ -74,11 +74,11 @@ impl Vehicle {
             }
             finite(key("initial_friction"), axle.initial_friction)?;
             if axle.initial_friction.abs() > axle.friction_limit {
-                return Err(Error::input(
-                    key("initial_friction"),
-                    format!("{} N", axle.initial_friction),
-                    format!("must lie within the friction limit, -{0} to {0} N", axle.friction_limit),
-                ));
+                let allowed = match axle.friction_limit {
+                    0.0 => "must be 0 where friction_limit is 0".to_string(),
+                    limit => format!("must lie within the friction limit, -{limit} to {limit} N"),
+                };
+                return Err(Error::input(key("initial_friction"), format!("{} N", axle.initial_friction), allowed));
             }
             if k > 0 && axle.position >= axles[k - 1].position {
                 return Err(Error::input(
@@ -94,7 +94,7 @@ impl Vehicle {
                 return Err(Error::input(
                     format!("axles[{k}].position"),
                     format!("{} m", vehicle.axles[k].position),
-                    "with the centre of mass where it is, this axle carries no load: it must stand between the axles",
+                    "this axle would carry no load: the centre of mass must lie between the axles",
                 ));
             }
         }

@@ -150,7 +150,7 @@ fn mirror_images() {
         let turned: Vec<f64> = sections.iter().rev().map(|x| length - x).collect();
         let [one, two] = [(&bridge, &sections), (&image, &turned)].map(|(bridge, sections)| {
             let flexibility = Flexibility::new(bridge, sections).unwrap();
-            let responses = Responses::new(&flexibility, bridge, sections);
+            let responses = Responses::new(&flexibility, bridge, sections, &mut || true).unwrap();
             (flexibility, responses)
         });
         for quantity in Quantity::ALL {

@@ -15,10 +15,6 @@ use spanwise::sequence::{Recovered, Sequence};
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;
 
-/// A response that never exceeds this fraction of the largest of its kind is zero but for rounding (the deflection of
-/// a support, the moment of a pin); it is then measured against that largest.
-const NOTHING: f64 = 1e-9;
-
 /// An axle within this fraction of the length of a section stands on it: its shear is two-valued there.
 const ON_SECTION: f64 = 1e-9;
 
@@ -91,25 +87,10 @@ fn two_valued(run: &Run, row: &Row<'_>, r: usize) -> bool {
     })
 }
 
-/// What each response is measured against: its own largest value in the run, or that of its kind if it is nothing.
-fn scales(run: &Run) -> Vec<f64> {
-    let n = run.analysis.rows.len();
-    let mut own = vec![0.0_f64; n];
-    for row in run.rows() {
-        own.iter_mut().zip(row.dynamic).for_each(|(m, v)| *m = m.max(v.abs()));
-    }
-    for quantity in Quantity::ALL {
-        let kind = &mut own[run.analysis.responses.range(quantity)];
-        let largest = largest_magnitude(kind);
-        kind.iter_mut().filter(|m| **m <= NOTHING * largest).for_each(|m| *m = largest);
-    }
-    own
-}
-
 /// Largest difference of rows and sequence over a run, each response relative to its scale.
 fn rows_against_sequence(run: &Run, c: &Mat<f64>, by_rates: bool) -> f64 {
     let sequence = sequence(run, c);
-    let scales = scales(run);
+    let scales = run.scales();
     let mut worst = 0.0_f64;
     for row in run.rows() {
         let axles = axles(&row);

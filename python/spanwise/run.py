@@ -85,6 +85,12 @@ class Envelope:
     static_min: Extremes
 
 
+def _frozen(values: Array) -> Array:
+    """The array, kept from being changed by mistake: others read it too."""
+    values.setflags(write=False)
+    return values
+
+
 class Responses:
     """Responses at every instant, as arrays of shape (time, section) and the like.
 
@@ -92,7 +98,7 @@ class Responses:
     and the right side of each section, ``shear_left``, ``shear_right``, ``reactions``
     (time, support) [N] and ``clamp_moments`` (time, clamp) [N m]. Deflections are down, moments
     sagging, shears sums of the upward forces to the left, reactions up. They are computed from the
-    states of the crossing when first asked for.
+    states of the crossing when first asked for, kept, and not to be written to: copy them first.
     """
 
     def __init__(self, histories: Callable[[str], Array]) -> None:
@@ -217,7 +223,7 @@ class Run(Responses):
         settings: dict[str, object],
         core: _core.Crossing,
     ) -> None:
-        both = cache(core.histories)
+        both = cache(lambda name: [_frozen(values) for values in core.histories(name)])
         super().__init__(lambda name: both(name)[0])
         self.static = Responses(lambda name: both(name)[1])
         self._core = core
@@ -231,23 +237,25 @@ class Run(Responses):
     @cached_property
     def time(self) -> Array:
         """Time since the front axle was at the start of the approach [s], shape (time,)."""
-        return self._core.states("time").ravel()
+        return _frozen(self._core.states("time").ravel())
 
     @cached_property
     def axle_loads(self) -> Array:
         """Axle loads [N], shape (time, axle)."""
-        return self._core.states("axle_loads")
+        return _frozen(self._core.states("axle_loads"))
 
     @cached_property
     def vehicle(self) -> VehicleMotion:
         """The motion of the vehicle."""
+        body = _frozen(self._core.states("body"))
         axles = ("positions", "suspension_shortenings", "friction")
-        return VehicleMotion(*self._core.states("body").T, *map(self._core.states, axles))
+        return VehicleMotion(*body.T, *(_frozen(self._core.states(name)) for name in axles))
 
     @cached_property
     def modal(self) -> ModalMotion:
         """The motion of the bridge in modal coordinates."""
-        return ModalMotion(*map(self._core.states, ("coordinates", "velocities", "accelerations")))
+        rates = ("coordinates", "velocities", "accelerations")
+        return ModalMotion(*(_frozen(self._core.states(name)) for name in rates))
 
     def __repr__(self) -> str:
         return (

@@ -196,7 +196,7 @@ pub fn run(
 ) -> Result<Run, Error> {
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, modes)?;
     let sections = (!sections.is_empty()).then_some(sections);
-    let analysis = Analysis::new(bridge, modes, damping, sections, recovery)?;
+    let analysis = Analysis::new(bridge, modes, damping, sections, recovery, &mut || true)?;
     let outcome = analysis.cross(vehicle, settings, &mut || true)?;
     let all = 0..analysis.rows.len();
     let responded = analysis.rows.histories(&outcome.history, all, &mut || true)?;
@@ -225,6 +225,21 @@ impl Run {
     pub fn history_of(&self, quantity: Quantity) -> Vec<f64> {
         let range = self.analysis.responses.range(quantity);
         self.rows().flat_map(|row| row.dynamic[range.clone()].to_vec()).collect()
+    }
+
+    /// What each response is measured against: its own largest value in the run, or if that is nothing but rounding
+    /// (the deflection of a support, the moment of a pin) the largest of its kind.
+    pub fn scales(&self) -> Vec<f64> {
+        let mut own = vec![0.0_f64; self.analysis.rows.len()];
+        for row in self.rows() {
+            own.iter_mut().zip(row.dynamic).for_each(|(m, v)| *m = m.max(v.abs()));
+        }
+        for quantity in Quantity::ALL {
+            let kind = &mut own[self.analysis.responses.range(quantity)];
+            let largest = largest_magnitude(kind);
+            kind.iter_mut().filter(|m| **m <= 1e-9 * largest).for_each(|m| *m = largest);
+        }
+        own
     }
 
     /// The crossing instant after instant.
