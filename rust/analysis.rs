@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::flexibility::Flexibility;
 use crate::influence::{Quantity, Responses};
 use crate::modes::Modes;
-use crate::recovery::{Recovery, Rows};
+use crate::recovery::{Packed, Recovery, Rows};
 use crate::vehicle::Vehicle;
 
 /// Most memory that the histories of one quantity may take [bytes].
@@ -63,8 +63,9 @@ impl Analysis {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Outcome, Error> {
         let history = cross(&self.model, vehicle, settings, go_on)?;
-        let envelope = survey(&history, &self.rows, &self.responses, go_on)?;
-        Ok(Outcome { axle_loads: axle_loads(&history), history, envelope })
+        let packed = self.rows.pack_history(&history);
+        let envelope = survey(&history, &self.rows, &packed, &self.responses, go_on)?;
+        Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope })
     }
 
     /// The responses of one quantity at every instant, dynamic and static, row by row.
@@ -85,7 +86,7 @@ impl Analysis {
             );
             return Err(Error::input("sections", size, allowed));
         }
-        self.rows.histories(&outcome.history, range, go_on)
+        self.rows.histories(&outcome.packed, range, go_on)
     }
 
     /// Extremes of one quantity; shears on both sides of a section count together.
@@ -103,6 +104,8 @@ impl Analysis {
 pub struct Outcome {
     /// States, step after step.
     pub history: History,
+    /// The same, made ready for recovery.
+    pub packed: Packed,
     /// Extremes of all responses.
     pub envelope: Envelope,
     /// Extremes of the axle loads.

@@ -94,17 +94,19 @@ pub struct Envelope {
 pub fn survey(
     history: &History,
     rows: &Rows,
+    packed: &Packed,
     responses: &Responses,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Envelope, Error> {
     let mut survey = Survey {
         history,
         rows,
+        packed,
         passing: Passing::new(history, rows, responses),
         dynamic: Extremes::none(rows.len()),
         at_rest: Extremes::none(rows.len()),
         watched: vec![[Watched::NOTHING; 2]; rows.blocks()],
-        packed: Packed::default(),
+        between: Packed::default(),
     };
     // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
     let arch = pulp::Arch::new();
@@ -125,13 +127,16 @@ const POLL_EVERY: usize = 1024;
 struct Survey<'a> {
     history: &'a History,
     rows: &'a Rows,
+    /// The instants of the history.
+    packed: &'a Packed,
     passing: Passing<'a>,
     /// From the passing of stops, in the end from all.
     dynamic: Extremes,
     at_rest: Extremes,
     /// At the instants of the history, dynamic and static.
     watched: Vec<[Watched; 2]>,
-    packed: Packed,
+    /// The instant of a stop.
+    between: Packed,
 }
 
 /// Some instants of a survey, compiled once for each instruction set.
@@ -152,11 +157,10 @@ impl pulp::WithSimd for GoThrough<'_, '_> {
 impl Survey<'_> {
     #[inline(always)]
     fn go_through(&mut self, instants: std::ops::Range<usize>) {
-        let packed = self.rows.pack_history(self.history, instants.clone());
         for (b, watched) in self.watched.iter_mut().enumerate() {
             let [mut dynamic, mut at_rest] = *watched;
             let mut number = instants.start as f64;
-            for now in packed.iter() {
+            for now in self.packed.instants(instants.clone()) {
                 let (d, s) = self.rows.block(b, now);
                 dynamic.take(&d, number);
                 at_rest.take(&s, number);
@@ -176,10 +180,9 @@ impl Survey<'_> {
             let [dynamic, at_rest] = self.watched[b];
             for at in [dynamic.max_at[i], dynamic.min_at[i], at_rest.max_at[i], at_rest.min_at[i]] {
                 let instant = at as usize;
-                let packed = self.rows.pack_history(self.history, instant..instant + 1);
                 let (time, position) =
                     (self.history.time[instant], self.history.positions[instant * self.history.axles]);
-                for now in packed.iter() {
+                for now in self.packed.instants(instant..instant + 1) {
                     let (d, s) = self.rows.block(b, now);
                     self.dynamic.take(r, Extreme { value: d[i], time, position, partner: s[i] });
                     self.at_rest.take(r, Extreme { value: s[i], time, position, partner: d[i] });
@@ -206,8 +209,8 @@ impl Survey<'_> {
     /// Takes in the responses of a section, or all at an end of the bridge, from the interpolated state.
     fn stop(&mut self, section: Option<usize>) {
         let state = &self.passing.state;
-        self.packed.clear();
-        self.rows.pack(&state.instant(&self.history.static_loads), &mut self.packed);
+        self.between.clear();
+        self.rows.pack(&state.instant(&self.history.static_loads), &mut self.between);
         let (time, position) = (state.time, state.positions[0]);
         let sections = self.passing.sections;
         let mut take = |now, r: usize| {
@@ -216,7 +219,7 @@ impl Survey<'_> {
             self.dynamic.take(r, Extreme { value: dynamic, time, position, partner: at_rest });
             self.at_rest.take(r, Extreme { value: at_rest, time, position, partner: dynamic });
         };
-        for now in self.packed.iter() {
+        for now in self.between.instants(0..1) {
             match section {
                 // Deflection, moment and both shears of the section itself: what else is looked at must not matter.
                 Some(s) => (0..4).for_each(|quantity| take(now, quantity * sections + s)),

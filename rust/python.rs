@@ -14,6 +14,10 @@ use crate::flexibility::Flexibility;
 use crate::modes::Modes;
 use crate::recovery::Recovery;
 
+/// Keeps freed memory for the next crossing: histories are megabytes, and fresh pages cost more than filling them.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Time between two looks at whether Python wants to interrupt.
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 

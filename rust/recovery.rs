@@ -54,16 +54,26 @@ impl Packed {
         self.axles.clear();
     }
 
-    /// The instants.
+    /// Some of the instants.
     #[inline(always)]
-    pub fn iter(&self) -> impl Iterator<Item = Ready<'_>> {
+    pub fn instants(&self, range: Range<usize>) -> impl Iterator<Item = Ready<'_>> {
         let [width, axles] = self.width;
-        let coordinates = self.coordinates.chunks_exact(width).zip(self.static_coordinates.chunks_exact(width));
-        coordinates.zip(self.axles.chunks_exact(axles)).map(|((coordinates, static_coordinates), axles)| Ready {
-            coordinates,
-            static_coordinates,
-            axles,
-        })
+        let coordinates = width * range.start..width * range.end;
+        let coordinates = (self.coordinates[coordinates.clone()].chunks_exact(width))
+            .zip(self.static_coordinates[coordinates].chunks_exact(width));
+        coordinates
+            .zip(self.axles[axles * range.start..axles * range.end].chunks_exact(axles))
+            .map(|((coordinates, static_coordinates), axles)| Ready { coordinates, static_coordinates, axles })
+    }
+
+    /// Number of instants.
+    pub fn len(&self) -> usize {
+        self.axles.len().checked_div(self.width[1]).unwrap_or(0)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.axles.is_empty()
     }
 }
 
@@ -266,13 +276,16 @@ impl Rows {
         (dynamic, at_rest)
     }
 
-    /// Some rows of a history made ready.
-    pub fn pack_history(&self, history: &History, instants: Range<usize>) -> Packed {
+    /// All instants of a history made ready.
+    pub fn pack_history(&self, history: &History) -> Packed {
         let axles = history.axles;
         let mut packed = Packed::default();
+        packed.coordinates.reserve_exact(self.width * history.len());
+        packed.static_coordinates.reserve_exact(self.width * history.len());
+        packed.axles.reserve_exact(axles * history.len());
         let mut places = vec![None; axles];
-        for i in instants {
-            for (place, &x) in places.iter_mut().zip(&history.positions[i * axles..(i + 1) * axles]) {
+        for (i, positions) in history.positions.chunks_exact(axles).enumerate() {
+            for (place, &x) in places.iter_mut().zip(positions) {
                 *place = self.place(x);
             }
             self.pack(&Instant::of(history, i, &places), &mut packed);
@@ -280,24 +293,24 @@ impl Rows {
         packed
     }
 
-    /// The responses of a range at every instant of a history, dynamic and static, row by row.
+    /// The responses of a range at every instant, dynamic and static, row by row.
     pub fn histories(
         &self,
-        history: &History,
+        packed: &Packed,
         range: Range<usize>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<[Vec<f64>; 2], Error> {
-        let count = range.len() * history.len();
+        let count = range.len() * packed.len();
         let mut filling = Filling {
             rows: self,
-            history,
+            packed,
             range,
             instants: 0..0,
             out: [Vec::with_capacity(count), Vec::with_capacity(count)],
         };
         let arch = pulp::Arch::new();
-        for from in (0..history.len()).step_by(POLL_EVERY) {
-            filling.instants = from..(from + POLL_EVERY).min(history.len());
+        for from in (0..packed.len()).step_by(POLL_EVERY) {
+            filling.instants = from..(from + POLL_EVERY).min(packed.len());
             arch.dispatch(&mut filling);
             if !go_on() {
                 return Err(Error::Interrupted);
@@ -313,7 +326,7 @@ const POLL_EVERY: usize = 1024;
 /// Histories being filled in, compiled once for each instruction set.
 struct Filling<'a> {
     rows: &'a Rows,
-    history: &'a History,
+    packed: &'a Packed,
     range: Range<usize>,
     instants: Range<usize>,
     out: [Vec<f64>; 2],
@@ -324,8 +337,7 @@ impl pulp::WithSimd for &mut Filling<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let packed = self.rows.pack_history(self.history, self.instants.clone());
-        for now in packed.iter() {
+        for now in self.packed.instants(self.instants.clone()) {
             for b in self.range.start / WIDTH..self.range.end.div_ceil(WIDTH) {
                 let (dynamic, at_rest) = self.rows.block(b, now);
                 let first = b * WIDTH;

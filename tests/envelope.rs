@@ -13,7 +13,7 @@ use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, 
 const ROUNDING: f64 = 1e-12;
 
 /// By how much a peak may stand above both instants around it, a millisecond apart, relative to the largest value.
-const BETWEEN_STEPS: f64 = 5e-3;
+const BETWEEN_STEPS: f64 = 2e-2;
 
 fn crossed(bridge: &Bridge, recovery: Recovery) -> Run {
     // Every millisecond; stable in four modes of every bridge here.
@@ -74,6 +74,21 @@ fn check_place(run: &Run, r: usize, extreme: &Extreme, column: &[f64], partner: 
 fn ends_are_held(bridge: &Bridge) -> bool {
     let supports = bridge.supports();
     supports[0].at == 0.0 && supports[supports.len() - 1].at == bridge.length()
+}
+
+/// The histories of one quantity are its columns of the histories of all, to the bit.
+#[test]
+fn histories_of_one_quantity() {
+    let run = crossed(&arrangements().swap_remove(4).1, ForceSummation);
+    for quantity in Quantity::ALL {
+        let range = run.analysis.responses.range(quantity);
+        let found = run.analysis.histories(&run.outcome, quantity, &mut || true).unwrap();
+        for (found, all) in found.iter().zip(&run.responded) {
+            let expected: Vec<f64> =
+                all.chunks_exact(run.analysis.rows.len()).flat_map(|row| row[range.clone()].to_vec()).collect();
+            assert_eq!(found, &expected, "{quantity:?}");
+        }
+    }
 }
 
 /// Static extremes where the answer is known: one load on a simple span.

@@ -199,7 +199,7 @@ pub fn run(
     let analysis = Analysis::new(bridge, modes, damping, sections, recovery, &mut || true)?;
     let outcome = analysis.cross(vehicle, settings, &mut || true)?;
     let all = 0..analysis.rows.len();
-    let responded = analysis.rows.histories(&outcome.history, all, &mut || true)?;
+    let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
     Ok(Run { bridge: bridge.clone(), analysis, outcome, responded })
 }
 
