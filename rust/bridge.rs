@@ -88,9 +88,10 @@ impl Bridge {
             not_negative(indexed("mass", i, given), m)?;
         }
 
+        let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near);
         let mut lumps = match stations {
             Stations::PerSpan(counts) => equal_shares(&bounds, &mass, counts)?,
-            Stations::At(positions) => tributary_shares(&bounds, &mass, positions)?,
+            Stations::At(positions) => tributary_shares(&bounds, &mass, positions, &held)?,
         };
         for (i, &(at, m)) in point_masses.iter().enumerate() {
             on_the_bridge(&format!("point_masses[{i}]"), at, length)?;
@@ -105,7 +106,6 @@ impl Bridge {
         }
         lumps.sort_by(|a, b| a.at.total_cmp(&b.at));
         let total: f64 = lumps.iter().map(|s| s.mass).sum();
-        let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near);
         // A mass over a support does not move: it takes no part in the dynamics.
         lumps.retain(|s| s.mass > 0.0 && !held(s.at));
         if lumps.is_empty() {
@@ -299,7 +299,12 @@ fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<St
 }
 
 /// Each station takes the mass up to half-way to its neighbours; no share reaches across a support.
-fn tributary_shares(bounds: &[f64], mass: &[f64], positions: &[f64]) -> Result<Vec<Station>, Error> {
+fn tributary_shares(
+    bounds: &[f64],
+    mass: &[f64],
+    positions: &[f64],
+    held: &dyn Fn(f64) -> bool,
+) -> Result<Vec<Station>, Error> {
     let length = bounds[bounds.len() - 1];
     let near = COINCIDENT * length;
     if positions.len() > MAX_STATIONS {
@@ -319,11 +324,11 @@ fn tributary_shares(bounds: &[f64], mass: &[f64], positions: &[f64]) -> Result<V
     for (span, bound) in bounds.windows(2).enumerate() {
         let first = positions.partition_point(|&x| x < bound[0] - near);
         let last = positions.partition_point(|&x| x <= bound[1] + near);
-        if first == last && mass[span] > 0.0 {
+        if positions[first..last].iter().all(|&x| held(x)) && mass[span] > 0.0 {
             return Err(Error::input(
                 "stations",
                 format!("none from {} m to {} m", bound[0], bound[1]),
-                "every span that has mass needs at least one station",
+                "every span that has mass needs at least one station off its supports",
             ));
         }
         for i in first..last {

@@ -15,6 +15,9 @@ use crate::vehicle::{Suspension, Vehicle};
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
 pub const MAX_STEPS: usize = 2_000_000;
 
+/// Most memory that the states of one crossing may take [bytes].
+const MAX_HISTORY_BYTES: f64 = 4e9;
+
 /// Steps to the shortest coupled period unless the user gives a step.
 const STEPS_PER_PERIOD: f64 = 20.0;
 
@@ -202,8 +205,27 @@ impl Settings {
                 Some(step) => ("step", format!("{step:e} s")),
                 None => ("speed", format!("{:e} m/s", self.speed)),
             };
-            let allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
+            let mut allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
+            if self.step.is_none() {
+                allowed += &format!(
+                    " (the default step is {longest:.3e} s, for a narrowest panel of {:.3e} m and a shortest period of \
+                     {:.3e} s; give step to choose another)",
+                    model.narrowest_panel,
+                    std::f64::consts::TAU / fastest
+                );
+            }
             return Err(Error::input(key, value, allowed));
+        }
+        // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
+        let (modes, axles) = (model.omega.len(), vehicle.axles().len());
+        let bytes = steps * (size_of::<f64>() * (10 + 5 * modes + 8 * axles + modes * axles)) as f64;
+        if bytes > MAX_HISTORY_BYTES {
+            let allowed = format!(
+                "{steps:.3e} steps would take {:.1} GB of memory, more than {:.1}: use fewer modes or a longer step",
+                bytes / 1e9,
+                MAX_HISTORY_BYTES / 1e9
+            );
+            return Err(Error::input("modes", modes, allowed));
         }
         Ok((path / (self.speed * count), count as usize))
     }
@@ -327,7 +349,8 @@ pub fn cross(
     match settings.drive {
         Drive::ConstantSpeed => {
             let behind = arms.iter().map(|a| arms[0] - a).collect();
-            let with_tail = steps + (settings.tail / h - 1e-9).ceil() as usize;
+            // One more than needed, so that rounding of the tail does not matter.
+            let with_tail = steps + (settings.tail / h).ceil() as usize + 1;
             let advance = path / steps as f64;
             let geometry = Prescribed::new(&model.shapes, behind, -settings.approach, advance, with_tail);
             march(model, vehicle, settings, h, path, travel, geometry, go_on)
@@ -376,8 +399,8 @@ fn march(
             Error::NoConvergence { what, time, position: front }
         })?;
         let position = geometry.position(0);
-        let energy = state.modes.iter().fold(state.heave.a + state.pitch.a, |sum, c| sum + c.a);
-        if !energy.is_finite() || !position.is_finite() {
+        let accelerations = state.modes.iter().fold(state.heave.a + state.pitch.a, |sum, c| sum + c.a);
+        if !accelerations.is_finite() || !position.is_finite() {
             return Err(Error::NotFinite { time, position: front });
         }
         if rolling && state.travel.v <= 0.0 {

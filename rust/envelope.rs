@@ -2,7 +2,7 @@
 
 use crate::crossing::History;
 use crate::error::Error;
-use crate::influence::Responses;
+use crate::influence::{Quantity, Responses};
 use crate::recovery::{Block, Instant, Packed, Place, Rows, WIDTH};
 
 /// An extreme of a response over a crossing.
@@ -90,7 +90,8 @@ pub struct Envelope {
 ///
 /// A moment peaks, and a shear jumps, as an axle passes the section, and where the bridge has a free end every response
 /// jumps as an axle enters or leaves. These instants are part of the extremes, from the interpolated state and on both
-/// sides, so that the extremes converge with the square of the step.
+/// sides, so that the extremes converge with the square of the step. At a free end the axle load itself jumps, as the
+/// wheel drops on or off the deflected tip; there they converge with the step.
 pub fn survey(
     history: &History,
     rows: &Rows,
@@ -198,16 +199,19 @@ impl Survey<'_> {
                 self.passing.state.set(self.history, i, fraction, self.rows);
                 let left = node.checked_sub(1).map(|panel| (panel, 1.0));
                 let right = (node < self.rows.mesh().panels()).then_some((node, 0.0));
-                for side in [left, right] {
+                for (side, row) in [(left, i - 1), (right, i)] {
                     self.passing.state.places[axle] = side;
-                    self.stop(section);
+                    if !self.passing.continuous(node) {
+                        self.passing.state.jump(self.history, row, axle);
+                    }
+                    self.stop(node, section, axle);
                 }
             }
         }
     }
 
     /// Takes in the responses of a section, or all at an end of the bridge, from the interpolated state.
-    fn stop(&mut self, section: Option<usize>) {
+    fn stop(&mut self, node: usize, section: Option<usize>, axle: usize) {
         let state = &self.passing.state;
         self.between.clear();
         self.rows.pack(&state.instant(&self.history.static_loads), &mut self.between);
@@ -226,6 +230,18 @@ impl Survey<'_> {
                 None => (0..self.rows.len()).for_each(|r| take(now, r)),
             }
         }
+        // On an end itself the axle stands beyond the section that looks at it from inside.
+        if let Some((r, sign)) = self.passing.tip_shear(node)
+            && state.places[axle].is_some()
+        {
+            for now in self.between.instants(0..1) {
+                let (dynamic, at_rest) = self.rows.block(r / WIDTH, now);
+                let dynamic = dynamic[r % WIDTH] + sign * self.rows.weight() * state.loads[axle];
+                let at_rest = at_rest[r % WIDTH] + sign * self.history.static_loads[axle];
+                self.dynamic.take(r, Extreme { value: dynamic, time, position, partner: at_rest });
+                self.at_rest.take(r, Extreme { value: at_rest, time, position, partner: dynamic });
+            }
+        }
     }
 }
 
@@ -235,6 +251,8 @@ struct Passing<'a> {
     /// Stops, left to right: node, position [m], and the section there if it is not an end of the bridge.
     stops: Vec<(usize, f64, Option<usize>)>,
     sections: usize,
+    /// The end nodes, whether each is supported, and the shear just inside it with the sign of an axle on the end.
+    ends: [(usize, bool, Option<(usize, f64)>); 2],
     /// For every axle the next stop ahead.
     ahead: Vec<usize>,
     state: Interpolated,
@@ -260,7 +278,26 @@ impl<'a> Passing<'a> {
         stops.extend([(0, x[0], None), (last, x[last], None)]);
         stops.sort_unstable_by_key(|stop| stop.0);
         let ahead = (0..history.axles).map(|k| stops.partition_point(|stop| stop.1 <= history.positions[k])).collect();
-        Passing { history, stops, sections: responses.sections().len(), ahead, state: Interpolated::default() }
+        let shear = |quantity: Quantity, node: usize, sign: f64| {
+            let section = responses.sections().iter().position(|&s| s == node);
+            section.map(|s| (responses.range(quantity).start + s, sign))
+        };
+        let ends = [
+            (0, responses.supported(0), shear(Quantity::ShearRight, 0, -1.0)),
+            (last, responses.supported(last), shear(Quantity::ShearLeft, last, 1.0)),
+        ];
+        let sections = responses.sections().len();
+        Passing { history, stops, sections, ends, ahead, state: Interpolated::default() }
+    }
+
+    /// Whether nothing jumps as an axle passes a node: all but the free ends, whose tip the wheel drops on or off.
+    fn continuous(&self, node: usize) -> bool {
+        self.ends.iter().all(|&(end, supported, _)| end != node || supported)
+    }
+
+    /// The shear just inside an end of the bridge, and the sign of an axle on that end.
+    fn tip_shear(&self, node: usize) -> Option<(usize, f64)> {
+        self.ends.iter().find(|end| end.0 == node).and_then(|end| end.2)
     }
 
     /// The next stop that an axle passes between instants i − 1 and i: its node, its section, and when, as a fraction.
@@ -290,6 +327,12 @@ impl Interpolated {
         mix(&mut self.positions, &history.positions, history.axles);
         self.places.clear();
         self.places.extend(self.positions.iter().map(|&x| rows.place(x)));
+    }
+
+    /// Takes what jumps at a free end, the load of the axle and the modal accelerations, from one row alone.
+    fn jump(&mut self, history: &History, row: usize, axle: usize) {
+        self.loads[axle] = history.loads[row * history.axles + axle];
+        self.a_ddot.copy_from_slice(&history.a_ddot[row * history.modes..(row + 1) * history.modes]);
     }
 
     fn instant<'a>(&'a self, static_loads: &'a [f64]) -> Instant<'a> {
@@ -377,10 +420,10 @@ impl Envelope {
             .map(|(numerator, denominator, extreme)| {
                 let size = |value: f64| if sense == Sense::Either { value.abs() } else { sign * value };
                 let divisible = size(denominator) > least && size(extreme) > least;
-                // A shear may change sign between the two instants: then the magnitudes are compared.
                 if !divisible {
                     f64::NAN
                 } else if ratio == Ratio::Extremes {
+                    // The largest shears may differ in sign: the magnitudes are compared.
                     size(numerator) / size(denominator)
                 } else {
                     numerator / denominator

@@ -27,7 +27,7 @@ pub enum Error {
     /// A time step beyond the stability limit of the chosen Newmark scheme.
     #[error(
         "step = {step} s: Newmark with beta = {beta} is stable only for steps up to {limit:.6e} s here \
-         (fastest coupled frequency at most {frequency:.3} Hz); shorten the step or use beta = 0.25"
+         (fastest coupled frequency about {frequency:.3} Hz); shorten the step or use beta = 0.25"
     )]
     StepTooLong {
         /// The step asked for [s].

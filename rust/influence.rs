@@ -160,6 +160,11 @@ impl Responses {
         }
     }
 
+    /// Whether a support holds the deflection at a node.
+    pub fn supported(&self, node: usize) -> bool {
+        self.restraints[0].contains(&Restraint::Deflection(node))
+    }
+
     /// The influence lines.
     pub fn lines(&self) -> &[Line] {
         &self.lines
@@ -172,10 +177,11 @@ impl Responses {
         let line = &self.lines[response];
         let own_section =
             |range: std::ops::Range<usize>| range.contains(&response) && self.sections[response - range.start] == node;
+        // Across its own section a shear's line rises by one, at the ends too, where there is no panel on one side.
         if own_section(self.range(Quantity::ShearLeft)) {
-            line.after(node)
+            if node == line.cubics().len() { line.before(node) + 1.0 } else { line.after(node) }
         } else if own_section(self.range(Quantity::ShearRight)) {
-            line.before(node)
+            if node == 0 { line.after(node) - 1.0 } else { line.before(node) }
         } else {
             line.at_node(node)
         }

@@ -269,12 +269,15 @@ mod _core {
             let along = match x {
                 None => None,
                 Some(x) => {
-                    let flexibility = Flexibility::new(bridge, &[])?;
-                    let lines = modes.lines(bridge, &flexibility);
-                    let mesh = flexibility.mesh();
-                    let x = x.as_array();
-                    let values = x.iter().flat_map(|&x| lines.iter().map(move |line| line.at(mesh, x)));
-                    Some(rows(py, values.collect(), modes.len())?)
+                    let x = x.as_array().to_vec();
+                    let values = py.detach(|| {
+                        let flexibility = Flexibility::new(bridge, &[])?;
+                        let lines = modes.lines(bridge, &flexibility);
+                        let mesh = flexibility.mesh();
+                        let values = x.iter().flat_map(|&x| lines.iter().map(move |line| line.at(mesh, x)));
+                        Ok::<Vec<f64>, Error>(values.collect())
+                    })?;
+                    Some(rows(py, values, modes.len())?)
                 }
             };
             let shapes = matrix(py, &modes.shapes);

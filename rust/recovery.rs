@@ -222,6 +222,11 @@ impl Rows {
         &self.mesh
     }
 
+    /// How much of an axle load enters dynamic responses directly: all by force summation, nothing by superposition.
+    pub fn weight(&self) -> f64 {
+        if self.recovery == Recovery::Superposition { 0.0 } else { 1.0 }
+    }
+
     /// Panel and fraction of a position [m].
     pub fn place(&self, x: f64) -> Place {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
@@ -243,7 +248,7 @@ impl Rows {
                 placed.fold(0.0, |sum, (place, load)| place.map_or(sum, |(p, f)| sum + load * shape.value(p, f)))
             }));
         }
-        let weight = if self.recovery == Recovery::Superposition { 0.0 } else { 1.0 };
+        let weight = self.weight();
         for ((place, load), &static_load) in now.places.iter().zip(now.loads).zip(now.static_loads) {
             packed.axles.push(match *place {
                 Some((panel, fraction)) => Placed { panel, fraction, load: weight * load, static_load },

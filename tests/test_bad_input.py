@@ -164,8 +164,20 @@ CROSSINGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"speed": 1e-9}, ("speed", "1e-9 m/s", "at most 2000000")),
     ({"speed": 10**400}, ("speed", "too large")),
     ({"step": 1e-12}, ("step", "1e-12 s", "at most 2000000")),
-    ({"tail": 1e9}, ("tail = 1e9 s", "at most 2000000",)),
-    ({"approach": 1e9}, ("approach = 1e9 m", "at most 2000000",)),
+    (
+        {"tail": 1e9},
+        (
+            "tail = 1e9 s",
+            "at most 2000000",
+        ),
+    ),
+    (
+        {"approach": 1e9},
+        (
+            "approach = 1e9 m",
+            "at most 2000000",
+        ),
+    ),
     ({"modes": 0}, ("modes", "0", "1 to 6")),
     ({"modes": 7}, ("modes", "7", "1 to 6")),
     ({"modes": -1}, ("modes", "-1", "not be negative")),

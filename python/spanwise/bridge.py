@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -148,6 +148,19 @@ class Bridge:
                 stations=at,
                 point_masses=points,
             )
+        self._arguments = {
+            "length": self.length,
+            "supports": self.supports,
+            "EI": self.EI.tolist(),
+            "mass": masses,
+            "stations_per_span": per_span if at is None else None,
+            "stations": at,
+            "point_masses": points,
+        }
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its arguments, so that it can go to another process."""
+        return _rebuilt, (self._arguments,)
 
     def __repr__(self) -> str:
         held = ", ".join(f"{kind} at {x:g} m" for x, kind in self.supports)
@@ -268,6 +281,10 @@ class Bridge:
         from spanwise.plotting import BridgePlot
 
         return BridgePlot(self)
+
+
+def _rebuilt(arguments: dict[str, Any]) -> Bridge:
+    return Bridge(**arguments)
 
 
 def _modes(value: object) -> int:

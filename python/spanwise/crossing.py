@@ -77,7 +77,7 @@ def cross(
         Gravity [m/s2].
     mask : float, optional
         Impact factors are not given where the static value is at most this fraction of the largest
-        along the bridge.
+        among the sections.
 
     Returns
     -------
@@ -104,41 +104,46 @@ def cross(
         spans = len(bridge.span_bounds) - 1
         modes = min(len(bridge.stations), max(3, 2 * spans))
     ratios, matrix = _damping(damping)
+    speed, beta, gravity = number("speed", speed), number("beta", beta), number("gravity", gravity)
+    approach, tail, mask = number("approach", approach), number("tail", tail), number("mask", mask)
+    modes = count("modes", modes)
     drive_word = word("drive", drive, *get_args(Drive))
     recovery_word = word("recovery", recovery, *get_args(Recovery))
-    if not 0.0 <= number("mask", mask) < 1.0:
+    if not 0.0 <= mask < 1.0:
         raise ValueError(
-            f"mask = {mask!r}: must be a fraction of the largest static value, from 0 to below 1"
+            f"mask = {mask:g}: must be a fraction of the largest static value, from 0 to below 1"
         )
-    settings: dict[str, object] = {
-        "speed": number("speed", speed),
-        "modes": count("modes", modes),
-        "drive": drive,
-        "damping": np.asarray(damping, dtype=np.float64).tolist(),
-        "approach": number("approach", approach),
-        "tail": number("tail", tail),
-        "recovery": recovery,
-        "beta": number("beta", beta),
-        "gravity": number("gravity", gravity),
-        "mask": number("mask", mask),
-    }
     core = _core.cross(
         bridge._core,
         vehicle._core,
-        speed=number("speed", speed),
+        speed=speed,
         drive=drive_word,
-        modes=count("modes", modes),
+        modes=modes,
         damping=ratios,
         damping_matrix=matrix,
-        beta=number("beta", beta),
+        beta=beta,
         step=None if step is None else number("step", step),
-        approach=number("approach", approach),
-        tail=number("tail", tail),
-        gravity=number("gravity", gravity),
+        approach=approach,
+        tail=tail,
+        gravity=gravity,
         sections=None if sections is None else numbers("sections", sections),
         recovery=recovery_word,
     )
-    settings["step"] = core.step
+    settings: dict[str, object] = {
+        "speed": speed,
+        "modes": modes,
+        "drive": drive_word,
+        "damping": matrix.tolist() if matrix is not None else ratios,
+        "approach": approach,
+        "tail": tail,
+        "recovery": recovery_word,
+        "beta": beta,
+        "gravity": gravity,
+        "mask": mask,
+        "step": core.step,
+    }
+    if np.ndim(damping) == 0:
+        settings["damping"] = ratios[0]
     return Run(bridge, vehicle, settings, core)
 
 

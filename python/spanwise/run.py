@@ -326,7 +326,7 @@ class Run(Responses):
             hogging=factors("moment", "negative"),
             shear=factors("shear", "either"),
             supports=self.supports,
-            reactions=factors("reactions", "positive"),
+            reactions=factors("reactions", "either"),
             axle_loads=factors("axle_loads", "positive"),
         )
 

@@ -38,7 +38,7 @@ class ImpactFactors:
     supports : ndarray, shape (support,)
         Positions [m].
     reactions : ndarray, shape (support,)
-        Of the upward reactions.
+        Of the reactions, up or down, whichever is larger.
     axle_loads : ndarray, shape (axle,)
         Largest axle load by static axle load.
     """
@@ -114,7 +114,7 @@ class ImpactFactors:
         }[self.ratio]
         return (
             f"{definition}; -: masked, static value at most {100 * self.mask:g} % of the largest "
-            "of its kind along the bridge"
+            "of its kind in the sections"
         )
 
 

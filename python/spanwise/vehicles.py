@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,14 +87,14 @@ class Vehicle:
         for k, axle in enumerate(self.axles):
             if not isinstance(axle, Axle):
                 raise ValueError(f"axles[{k}] = {shown(axle)}: must be an Axle")
-            fields = (
+            names = (
                 "position",
                 "tyre_stiffness",
                 "suspension_stiffness",
                 "friction_limit",
                 "initial_friction",
             )
-            rows.append([number(f"axles[{k}].{name}", getattr(axle, name)) for name in fields])
+            rows.append([number(f"axles[{k}].{name}", getattr(axle, name)) for name in names])
         core = _core.Vehicle(
             mass=number("vehicle mass", self.mass),
             pitch_inertia=number("pitch_inertia", self.pitch_inertia),
@@ -102,6 +102,10 @@ class Vehicle:
             axles=rows,
         )
         object.__setattr__(self, "_core", core)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        return _rebuilt, ({each.name: getattr(self, each.name) for each in fields(self)},)
 
     if TYPE_CHECKING:
 
@@ -152,6 +156,10 @@ class Vehicle:
         from spanwise.plotting import VehiclePlot
 
         return VehiclePlot(self)
+
+
+def _rebuilt(arguments: dict[str, Any]) -> Vehicle:
+    return Vehicle(**arguments)
 
 
 def kishan_1973() -> Vehicle:

@@ -1,0 +1,47 @@
+"""Bridges and vehicles go to other processes, copies and archives."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+
+
+def largest_moment(bridge: sw.Bridge, vehicle: sw.Vehicle, speed: float) -> float:
+    run = sw.cross(bridge, vehicle, speed=speed)
+    return float(run.envelope("moment").max.value.max())
+
+
+@pytest.fixture
+def bridge() -> sw.Bridge:
+    return sw.Bridge(
+        length=30.0,
+        supports=[(0.0, "clamped"), (20.0, "pinned")],
+        EI=[2e9, 1e9],
+        mass=5e3,
+        stations_per_span=4,
+        point_masses=[(25.0, 1e3)],
+    )
+
+
+def test_copies_are_the_same(bridge: sw.Bridge) -> None:
+    vehicle = sw.vehicles.kishan_1973().with_initial_friction(1e4, -1e4)
+    for again in (pickle.loads(pickle.dumps(bridge)), copy.deepcopy(bridge)):
+        assert again.supports == bridge.supports
+        np.testing.assert_array_equal(again.masses, bridge.masses)
+        np.testing.assert_array_equal(again.modes(5).frequencies, bridge.modes(5).frequencies)
+    assert pickle.loads(pickle.dumps(vehicle)) == vehicle
+    assert copy.deepcopy(vehicle) == vehicle
+
+
+def test_crossings_in_other_processes(bridge: sw.Bridge) -> None:
+    vehicle = sw.vehicles.kishan_1973()
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = pool.submit(largest_moment, bridge, vehicle, 20.0).result()
+    assert there == largest_moment(bridge, vehicle, 20.0)
