@@ -11,6 +11,7 @@ import pytest
 
 import spanwise as sw
 
+EXAMPLES = Path(__file__).parent.parent / "examples"
 BRIDGE = """
 [bridge]
 spans = [18.288, 18.288]
@@ -279,3 +280,9 @@ def test_the_largest_case_file(tmp_path: Path) -> None:
         file.write("#")
     with pytest.raises(ValueError, match="has 1048577 bytes; a case file has at most 1048576"):
         sw.Case.read(path)
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_example_files_run(path: Path) -> None:
+    run = sw.Case.read(path).run(modes=2)
+    assert np.isfinite(run.envelope("moment").max.value).all()

@@ -148,7 +148,7 @@ class Bridge:
                 stations=at,
                 point_masses=points,
             )
-        self._arguments = {
+        self._arguments: dict[str, Any] = {
             "length": self.length,
             "supports": self.supports,
             "EI": self.EI.tolist(),
@@ -160,11 +160,16 @@ class Bridge:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its arguments, so that it can go to another process."""
-        return _rebuilt, (self._arguments,)
+        return _rebuilt, (self.arguments,)
 
     def __repr__(self) -> str:
         held = ", ".join(f"{kind} at {x:g} m" for x, kind in self.supports)
         return f"Bridge({self.length:g} m, {held}; {len(self.stations)} masses)"
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Keyword arguments that make the same bridge, as plain numbers and lists."""
+        return {key: value for key, value in self._arguments.items() if value is not None}
 
     @property
     def length(self) -> float:

@@ -92,6 +92,12 @@ def cross(
     RuntimeError
         If the numerics fail, or under constant traction the vehicle comes to rest.
 
+    Notes
+    -----
+    An axle that drives on to a *free* end of the bridge loads it suddenly with all it carries, and
+    its wheel drops off the deflected end as it leaves. The bridge rings from that at any speed, so
+    there impact factors do not tend to one as the speed goes down.
+
     References
     ----------
     .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973).

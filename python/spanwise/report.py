@@ -7,8 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._extras import require
@@ -25,12 +23,12 @@ def as_dict(run: Run) -> dict[str, Any]:
     """The results as plain lists and numbers, that JSON can hold.
 
     Where an impact factor is masked there is ``None``; a locked suspension has the friction limit
-    ``"inf"``, for JSON knows no infinity. The bridge comes with its masses as point masses.
+    ``"inf"``, for JSON knows no infinity.
     """
     result: dict[str, object] = {
         "version": __version__,
         "settings": {
-            "bridge": _bridge(run),
+            "bridge": run.bridge.arguments,
             "vehicle": asdict(run.truck),
             "crossing": {**run.settings, "sections": run.sections},
         },
@@ -97,19 +95,6 @@ def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
     index = pandas.Index(run.time, name="time [s]")
     frame: pd.DataFrame = pandas.DataFrame(values, index=index, columns=columns)
     return frame
-
-
-def _bridge(run: Run) -> dict[str, object]:
-    """Arguments of `Bridge` that make the same bridge."""
-    bridge = run.bridge
-    return {
-        "length": bridge.length,
-        "supports": bridge.supports,
-        "EI": bridge.EI,
-        "mass": 0.0,
-        "stations": bridge.stations,
-        "point_masses": np.column_stack([bridge.stations, bridge.masses]),
-    }
 
 
 def _impact_factors(run: Run) -> dict[str, object]:

@@ -83,9 +83,10 @@ def _row(
     scale: float = 1e-3,
 ) -> str:
     i = int(np.argmax(np.abs(dynamic.value)))
+    beside = round(static.value[i] * scale, 3) + 0.0  # never -0.000
     return (
         f"{name:<24}{dynamic.value[i] * scale:>10.3f}{places[i]:>14}{dynamic.time[i]:>10.4f}"
-        f"{dynamic.position[i]:>16.3f}{static.value[i] * scale:>10.3f}{factor_text(factors[i]):>8}"
+        f"{dynamic.position[i]:>16.3f}{beside:>10.3f}{factor_text(factors[i]):>8}"
     )
 
 

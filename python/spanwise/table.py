@@ -113,8 +113,8 @@ class ImpactFactors:
             "at-static-extreme": "dynamic value at the time of the static maximum / static maximum",
         }[self.ratio]
         return (
-            f"{definition}; -: masked, static value at most {100 * self.mask:g} % of the largest "
-            "of its kind in the sections"
+            f"{definition}; shear: the larger of both sides; "
+            f"-: masked, static value at most {100 * self.mask:g} % of the largest of its kind"
         )
 
 
