@@ -48,8 +48,9 @@ check: $(EXTENSION)
 	$(PY) -m mypy
 	$(PY) -m mypy.stubtest spanwise._core
 
-bench:
+bench: $(EXTENSION)
 	$(CARGO) bench --locked
+	$(PY) benches/python.py
 
 # With the feature `python` only to reuse what clippy compiled.
 docs: $(TOOLS)

@@ -7,10 +7,10 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use problems::{kishan_bridge, kishan_vehicle, undamped};
 use spanwise::analysis::Analysis;
 use spanwise::crossing::{Drive, Settings, cross};
-use spanwise::envelope::survey;
 use spanwise::flexibility::Flexibility;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
+use spanwise::survey::survey;
 
 fn kishan_1973(c: &mut Criterion) {
     let bridge = kishan_bridge();

@@ -1,13 +1,15 @@
 //! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
 
 use crate::bridge::Bridge;
-use crate::crossing::{Damping, History, ModalBridge, Settings, cross};
-use crate::envelope::{Envelope, axle_loads, survey};
+use crate::crossing::{Damping, ModalBridge, Settings, cross};
+use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
+use crate::history::History;
 use crate::influence::{Quantity, Responses};
 use crate::modes::Modes;
 use crate::recovery::{Packed, Recovery, Rows};
+use crate::survey::survey;
 use crate::vehicle::Vehicle;
 
 /// Most memory that the histories of one quantity may take [bytes].

@@ -3,13 +3,13 @@
 use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
-use crate::contact::Contact;
 use crate::error::{Error, finite, not_negative, positive};
 use crate::flexibility::Flexibility;
+use crate::history::History;
 use crate::line::Line;
 use crate::modes::Modes;
 use crate::path::{ModeShapes, Prescribed, Rolling};
-use crate::step::{Body, Geometry, ModalDamping, State, Stepper, Unsettled};
+use crate::step::{Body, Geometry, ModalDamping, Stepper, Unsettled};
 use crate::vehicle::{Suspension, Vehicle};
 
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
@@ -185,6 +185,16 @@ impl Settings {
         Ok(())
     }
 
+    /// Way of the front axle until the last axle leaves the bridge [m].
+    fn path(&self, model: &ModalBridge, vehicle: &Vehicle) -> f64 {
+        self.approach + model.shapes.mesh().length() + vehicle.wheelbase()
+    }
+
+    /// Where the centre of mass starts, from the left end of the bridge [m].
+    fn start(&self, vehicle: &Vehicle) -> f64 {
+        -self.approach - vehicle.axles()[0].position
+    }
+
     /// Time step and number of steps for a path of this length [m], without the tail.
     fn steps(&self, model: &ModalBridge, vehicle: &Vehicle, path: f64) -> Result<(f64, usize), Error> {
         let fastest = model.fastest_frequency(vehicle);
@@ -231,109 +241,6 @@ impl Settings {
     }
 }
 
-/// States of a crossing, step after step. Arrays hold one row per instant.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct History {
-    /// Number of axles.
-    pub axles: usize,
-    /// Number of included modes.
-    pub modes: usize,
-    /// Time step [s]; the last row may end a shorter one.
-    pub step: f64,
-    /// Static axle loads [N].
-    pub static_loads: Vec<f64>,
-    /// Time since the front axle was at the start of the approach [s].
-    pub time: Vec<f64>,
-    /// Axle positions from the left end of the bridge [m], row by row.
-    pub positions: Vec<f64>,
-    /// Axle loads [N], row by row.
-    pub loads: Vec<f64>,
-    /// Modal coordinates [m kg^½], row by row.
-    pub a: Vec<f64>,
-    /// Modal velocities [m kg^½/s], row by row.
-    pub a_dot: Vec<f64>,
-    /// Modal accelerations [m kg^½/s²], row by row.
-    pub a_ddot: Vec<f64>,
-    /// Heave, pitch and travel of the body with their first and second derivatives, row by row (nine numbers).
-    pub body: Vec<f64>,
-    /// Suspension shortenings since the static state [m], row by row.
-    pub shortenings: Vec<f64>,
-    /// Friction forces [N], row by row.
-    pub friction: Vec<f64>,
-}
-
-impl History {
-    /// Number of instants.
-    pub fn len(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Whether there is no instant (never so after a crossing).
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
-    }
-
-    /// Speed of the centre of mass at the end [m/s].
-    pub fn final_speed(&self) -> f64 {
-        self.body.last_chunk::<9>().map_or(0.0, |row| row[7])
-    }
-
-    fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
-        self.time.push(time);
-        for (k, increment) in state.increments.iter().enumerate() {
-            self.positions.push(geometry.position(k));
-            self.loads.push(self.static_loads[k] + increment);
-            self.shortenings.push(state.shortenings[k]);
-            self.friction.push(state.friction[k]);
-        }
-        for mode in &state.modes {
-            self.a.push(mode.x);
-            self.a_dot.push(mode.v);
-            self.a_ddot.push(mode.a);
-        }
-        for c in [state.heave, state.pitch, state.travel] {
-            self.body.push(c.x);
-            self.body.push(c.v);
-            self.body.push(c.a);
-        }
-    }
-
-    /// Makes room for this many instants.
-    fn reserve(&mut self, instants: usize) {
-        self.time.reserve_exact(instants);
-        self.body.reserve_exact(9 * instants);
-        for column in [&mut self.positions, &mut self.loads, &mut self.shortenings, &mut self.friction] {
-            column.reserve_exact(self.axles * instants);
-        }
-        for column in [&mut self.a, &mut self.a_dot, &mut self.a_ddot] {
-            column.reserve_exact(self.modes * instants);
-        }
-    }
-
-    /// Cuts the last step short: its end becomes the state this fraction of the way through it.
-    fn shorten_last(&mut self, fraction: f64) {
-        let [m, k] = [self.modes, self.axles];
-        let columns: [(&mut Vec<f64>, usize); 9] = [
-            (&mut self.time, 1),
-            (&mut self.positions, k),
-            (&mut self.loads, k),
-            (&mut self.a, m),
-            (&mut self.a_dot, m),
-            (&mut self.a_ddot, m),
-            (&mut self.body, 9),
-            (&mut self.shortenings, k),
-            (&mut self.friction, k),
-        ];
-        for (column, width) in columns {
-            let last = column.len() - width;
-            let (before, after) = column.split_at_mut(last);
-            for (b, a) in before[last - width..].iter().zip(after) {
-                *a = b + fraction * (*a - b);
-            }
-        }
-    }
-}
-
 /// Crosses the bridge once. `go_on` is asked now and then; when it says no, the crossing ends as interrupted.
 pub fn cross(
     model: &ModalBridge,
@@ -342,46 +249,41 @@ pub fn cross(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<History, Error> {
     settings.check()?;
-    let path = settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
+    let path = settings.path(model, vehicle);
     let (h, steps) = settings.steps(model, vehicle, path)?;
-    let arms: Vec<f64> = vehicle.axles().iter().map(|axle| axle.position).collect();
-    let travel = -settings.approach - arms[0];
     match settings.drive {
         Drive::ConstantSpeed => {
-            let behind = arms.iter().map(|a| arms[0] - a).collect();
+            let front = vehicle.axles()[0].position;
+            let behind = vehicle.axles().iter().map(|axle| front - axle.position).collect();
             // One more than needed, so that rounding of the tail does not matter.
             let with_tail = steps + (settings.tail / h).ceil() as usize + 1;
             let advance = path / steps as f64;
             let geometry = Prescribed::new(&model.shapes, behind, -settings.approach, advance, with_tail);
-            march(model, vehicle, settings, h, path, travel, geometry, go_on)
+            march(model, vehicle, settings, h, geometry, go_on)
         }
         Drive::ConstantTraction => {
-            let geometry = Rolling::new(&model.shapes, arms, vehicle.cg_height(), travel);
-            march(model, vehicle, settings, h, path, travel, geometry, go_on)
+            let arms = vehicle.axles().iter().map(|axle| axle.position).collect();
+            let geometry = Rolling::new(&model.shapes, arms, vehicle.cg_height(), settings.start(vehicle));
+            march(model, vehicle, settings, h, geometry, go_on)
         }
     }
 }
 
-#[allow(clippy::too_many_arguments)]
 fn march(
     model: &ModalBridge,
     vehicle: &Vehicle,
     settings: &Settings,
     h: f64,
-    path: f64,
-    travel: f64,
     mut geometry: impl Geometry<f64>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<History, Error> {
-    let static_loads = vehicle.static_loads(settings.gravity);
-    let contacts: Vec<Contact<f64>> =
-        vehicle.axles().iter().zip(&static_loads).map(|(axle, &load)| Contact::new(axle, load)).collect();
-    let body = Body { mass: vehicle.mass(), pitch_inertia: vehicle.pitch_inertia(), cg_height: vehicle.cg_height() };
-    let arms = vehicle.axles().iter().map(|axle| axle.position).collect();
+    let path = settings.path(model, vehicle);
     let rolling = settings.drive == Drive::ConstantTraction;
-    let mut stepper = Stepper::new(&model.omega, &model.damping, body, contacts, arms, rolling, h, settings.beta);
-    let mut state = stepper.start(travel, settings.speed, &geometry);
+    let body = Body::new(vehicle, settings.gravity);
+    let mut stepper = Stepper::new(&model.omega, &model.damping, body, rolling, h, settings.beta);
+    let mut state = stepper.start(settings.start(vehicle), settings.speed, &geometry);
 
+    let static_loads = vehicle.static_loads(settings.gravity);
     let axles = static_loads.len();
     let length = model.shapes.mesh().length();
     let mut history = History { axles, modes: model.omega.len(), step: h, static_loads, ..History::default() };

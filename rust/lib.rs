@@ -2,7 +2,8 @@
 //!
 //! The files follow the data: a [`bridge`] becomes cubic [`line`]s by its [`flexibility`] and [`influence`] lines,
 //! whose [`modes`] carry the motion; a [`vehicle`] presses on it through [`contact`] forces in every [`step`], along its
-//! [`path`], for a whole [`crossing`]; [`recovery`] turns modal states into responses and [`envelope`] into extremes.
+//! [`path`], for a whole [`crossing`], whose [`history`] is kept; [`recovery`] turns modal states into responses, and the
+//! [`survey`] of a history into the [`envelope`] of their extremes.
 
 pub mod error;
 
@@ -22,11 +23,13 @@ pub mod path;
 pub mod step;
 
 pub mod crossing;
+pub mod history;
 
 pub mod recovery;
 pub mod sequence;
 
 pub mod envelope;
+pub mod survey;
 
 pub mod analysis;
 

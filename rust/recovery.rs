@@ -9,8 +9,9 @@ use std::ops::Range;
 use faer::Mat;
 
 use crate::bridge::Bridge;
-use crate::crossing::{Damping, History, ModalBridge};
+use crate::crossing::{Damping, ModalBridge};
 use crate::error::Error;
+use crate::history::History;
 use crate::influence::Responses;
 use crate::line::{Line, Mesh};
 use crate::modes::Modes;
@@ -46,37 +47,6 @@ pub struct Instant<'a> {
     pub places: &'a [Place],
 }
 
-impl Packed {
-    /// Forgets all instants.
-    pub fn clear(&mut self) {
-        self.coordinates.clear();
-        self.static_coordinates.clear();
-        self.axles.clear();
-    }
-
-    /// Some of the instants.
-    #[inline(always)]
-    pub fn instants(&self, range: Range<usize>) -> impl Iterator<Item = Ready<'_>> {
-        let [width, axles] = self.width;
-        let coordinates = width * range.start..width * range.end;
-        let coordinates = (self.coordinates[coordinates.clone()].chunks_exact(width))
-            .zip(self.static_coordinates[coordinates].chunks_exact(width));
-        coordinates
-            .zip(self.axles[axles * range.start..axles * range.end].chunks_exact(axles))
-            .map(|((coordinates, static_coordinates), axles)| Ready { coordinates, static_coordinates, axles })
-    }
-
-    /// Number of instants.
-    pub fn len(&self) -> usize {
-        self.axles.len().checked_div(self.width[1]).unwrap_or(0)
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.axles.is_empty()
-    }
-}
-
 impl<'a> Instant<'a> {
     /// Row i of a history, its axles placed.
     #[inline(always)]
@@ -109,6 +79,37 @@ pub struct Packed {
     /// Ā_st, the modal coordinates of the static loads, or zeros where the rows do not need them.
     static_coordinates: Vec<f64>,
     axles: Vec<Placed>,
+}
+
+impl Packed {
+    /// Forgets all instants.
+    pub fn clear(&mut self) {
+        self.coordinates.clear();
+        self.static_coordinates.clear();
+        self.axles.clear();
+    }
+
+    /// Some of the instants.
+    #[inline(always)]
+    pub fn instants(&self, range: Range<usize>) -> impl Iterator<Item = Ready<'_>> {
+        let [width, axles] = self.width;
+        let coordinates = width * range.start..width * range.end;
+        let coordinates = (self.coordinates[coordinates.clone()].chunks_exact(width))
+            .zip(self.static_coordinates[coordinates].chunks_exact(width));
+        coordinates
+            .zip(self.axles[axles * range.start..axles * range.end].chunks_exact(axles))
+            .map(|((coordinates, static_coordinates), axles)| Ready { coordinates, static_coordinates, axles })
+    }
+
+    /// Number of instants.
+    pub fn len(&self) -> usize {
+        self.axles.len().checked_div(self.width[1]).unwrap_or(0)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.axles.is_empty()
+    }
 }
 
 /// One of the instants in [`Packed`].

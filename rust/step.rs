@@ -7,6 +7,7 @@ use faer::Mat;
 
 use crate::contact::{self, Contact};
 use crate::lane::Lane;
+use crate::vehicle::Vehicle;
 
 /// Most passes in which axle positions and surge follow the corrected state; two or three are usual.
 const PASSES: usize = 50;
@@ -162,8 +163,8 @@ fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
     a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
-/// What one sample brings to a step besides its state.
-#[derive(Debug, Clone, Copy)]
+/// The vehicle of one sample, as the step sees it.
+#[derive(Debug, Clone)]
 pub struct Body<L> {
     /// Mass [kg].
     pub mass: L,
@@ -171,6 +172,24 @@ pub struct Body<L> {
     pub pitch_inertia: L,
     /// Height of the centre of mass above the road [m].
     pub cg_height: L,
+    /// Laws of the contact forces, axle by axle.
+    pub contacts: Vec<Contact<L>>,
+    /// Distances of the axles ahead of the centre of mass [m].
+    pub arms: Vec<L>,
+}
+
+impl<L: Lane> Body<L> {
+    /// The same vehicle in every lane, under gravity [m/s²].
+    pub fn new(vehicle: &Vehicle, gravity: f64) -> Self {
+        let loads = vehicle.static_loads(gravity);
+        Body {
+            mass: L::splat(vehicle.mass()),
+            pitch_inertia: L::splat(vehicle.pitch_inertia()),
+            cg_height: L::splat(vehicle.cg_height()),
+            contacts: vehicle.axles().iter().zip(loads).map(|(axle, load)| Contact::new(axle, load)).collect(),
+            arms: vehicle.axles().iter().map(|axle| L::splat(axle.position)).collect(),
+        }
+    }
 }
 
 /// Why a step failed.
@@ -189,9 +208,6 @@ pub struct Stepper<L> {
     omega2: Vec<L>,
     modal: ModalSolve<L>,
     body: Body<L>,
-    contacts: Vec<Contact<L>>,
-    /// Axle distances ahead of the centre of mass [m].
-    arms: Vec<L>,
     /// Whether the vehicle rolls freely along the bridge (constant traction) instead of at a prescribed motion.
     rolling: bool,
     /// Accelerations of the body at the axles under unit axle loads, 1/m + a_i a_j/J, by rows [1/kg].
@@ -210,20 +226,11 @@ pub struct Stepper<L> {
 
 impl<L: Lane> Stepper<L> {
     /// For modes of circular frequencies `omega` [rad/s], steps of `h` [s] and Newmark's `beta`.
-    pub fn new(
-        omega: &[f64],
-        damping: &ModalDamping,
-        body: Body<L>,
-        contacts: Vec<Contact<L>>,
-        arms: Vec<L>,
-        rolling: bool,
-        h: f64,
-        beta: f64,
-    ) -> Self {
-        let (modes, axles) = (omega.len(), contacts.len());
+    pub fn new(omega: &[f64], damping: &ModalDamping, body: Body<L>, rolling: bool, h: f64, beta: f64) -> Self {
+        let (modes, axles) = (omega.len(), body.contacts.len());
         let zero = L::splat(0.0);
         let at_axles = |a: &L, b: &L| L::splat(1.0) / body.mass + *a * *b / body.pitch_inertia;
-        let body_receptance = arms.iter().flat_map(|a| arms.iter().map(move |b| at_axles(a, b))).collect();
+        let body_receptance = body.arms.iter().flat_map(|a| body.arms.iter().map(move |b| at_axles(a, b))).collect();
         Stepper {
             body_receptance,
             newmark: Newmark {
@@ -235,8 +242,6 @@ impl<L: Lane> Stepper<L> {
             omega2: omega.iter().map(|w| L::splat(w * w)).collect(),
             modal: ModalSolve::new(omega, damping, h, beta),
             body,
-            contacts,
-            arms,
             rolling,
             predicted: vec![Coordinate::rest(); modes],
             free: vec![zero; modes],
@@ -254,7 +259,7 @@ impl<L: Lane> Stepper<L> {
     pub fn start(&self, travel: L, speed: L, geometry: &impl Geometry<L>) -> State<L> {
         let zero = L::splat(0.0);
         let modes = (0..self.omega2.len()).map(|m| {
-            let force = self.contacts.iter().enumerate();
+            let force = self.body.contacts.iter().enumerate();
             let a = force.fold(zero, |sum, (k, c)| sum + geometry.shape(k, m) * c.static_load);
             Coordinate { a, ..Coordinate::rest() }
         });
@@ -263,9 +268,9 @@ impl<L: Lane> Stepper<L> {
             heave: Coordinate::rest(),
             pitch: Coordinate::rest(),
             travel: Coordinate { x: travel, v: speed, a: zero },
-            increments: vec![zero; self.contacts.len()],
-            shortenings: vec![zero; self.contacts.len()],
-            friction: self.contacts.iter().map(|c| c.initial).collect(),
+            increments: vec![zero; self.body.contacts.len()],
+            shortenings: vec![zero; self.body.contacts.len()],
+            friction: self.body.contacts.iter().map(|c| c.initial).collect(),
         }
     }
 
@@ -292,7 +297,7 @@ impl<L: Lane> Stepper<L> {
             let drag = if self.rolling { drag } else { L::splat(0.0) };
             self.couple(geometry, heave.x, pitch.x - self.newmark.new * drag);
             let solved = contact::solve(
-                &self.contacts,
+                &self.body.contacts,
                 &self.offset,
                 &self.compliance,
                 &state.shortenings,
@@ -304,7 +309,7 @@ impl<L: Lane> Stepper<L> {
             }
             self.move_bridge(state);
             let (mut force, mut couple) = (L::splat(0.0), L::splat(0.0));
-            for (p, arm) in state.increments.iter().zip(&self.arms) {
+            for (p, arm) in state.increments.iter().zip(&self.body.arms) {
                 force = force - *p;
                 couple = couple - *p * *arm;
             }
@@ -332,7 +337,7 @@ impl<L: Lane> Stepper<L> {
 
     /// Commits the suspensions to the end of the step.
     fn settle(&self, state: &mut State<L>) {
-        for (k, contact) in self.contacts.iter().enumerate() {
+        for (k, contact) in self.body.contacts.iter().enumerate() {
             let (s, f) = contact.settle(state.increments[k], state.shortenings[k]);
             state.shortenings[k] = s;
             state.friction[k] = f;
@@ -341,7 +346,7 @@ impl<L: Lane> Stepper<L> {
 
     /// Shortenings without load increments `offset`, and what the increments take off them, `compliance`.
     fn couple(&mut self, geometry: &impl Geometry<L>, heave: L, pitch: L) {
-        let (modes, axles) = (self.omega2.len(), self.contacts.len());
+        let (modes, axles) = (self.omega2.len(), self.body.contacts.len());
         let beta_h2 = self.newmark.new;
         for (k, shapes) in self.shapes.chunks_exact_mut(modes).enumerate() {
             for (m, shape) in shapes.iter_mut().enumerate() {
@@ -353,13 +358,13 @@ impl<L: Lane> Stepper<L> {
             self.modal.apply(shapes, receptance);
         }
         let rows = self.compliance.chunks_exact_mut(axles).zip(self.body_receptance.chunks_exact(axles));
-        let axles = self.shapes.chunks_exact(modes).zip(&self.arms).zip(&mut self.offset).zip(rows);
+        let axles = self.shapes.chunks_exact(modes).zip(&self.body.arms).zip(&mut self.offset).zip(rows);
         for (((shapes, arm), offset), (compliance, body)) in axles {
             let mut d = heave + *arm * pitch;
             for ((shape, predicted), free) in shapes.iter().zip(&self.predicted).zip(&self.free) {
                 d = d - *shape * (predicted.x + beta_h2 * *free);
             }
-            let others = self.receptance.chunks_exact(modes).zip(&self.contacts);
+            let others = self.receptance.chunks_exact(modes).zip(&self.body.contacts);
             for (((receptance, contact), body), compliance) in others.zip(body).zip(compliance) {
                 let bridge = dot(shapes, receptance);
                 d = d - beta_h2 * bridge * contact.static_load;
@@ -372,7 +377,7 @@ impl<L: Lane> Stepper<L> {
     fn move_bridge(&mut self, state: &mut State<L>) {
         let modes = self.omega2.len();
         self.forces.copy_from_slice(&self.free);
-        let loads = self.contacts.iter().zip(&state.increments);
+        let loads = self.body.contacts.iter().zip(&state.increments);
         for (receptance, (contact, increment)) in self.receptance.chunks_exact(modes).zip(loads) {
             let load = contact.static_load + *increment;
             for (a, r) in self.forces.iter_mut().zip(receptance) {
@@ -387,7 +392,7 @@ impl<L: Lane> Stepper<L> {
     /// Acceleration along the road under constant traction: m ẍ = Σ P w' at the axles.
     fn surge(&self, state: &State<L>, geometry: &impl Geometry<L>) -> L {
         let mut force = L::splat(0.0);
-        for (k, contact) in self.contacts.iter().enumerate() {
+        for (k, contact) in self.body.contacts.iter().enumerate() {
             let modes = state.modes.iter().enumerate();
             let slope = modes.fold(L::splat(0.0), |sum, (m, mode)| sum + geometry.slope(k, m) * mode.x);
             force = force + (contact.static_load + state.increments[k]) * slope;
