@@ -175,6 +175,7 @@ mod _core {
     #[pymethods]
     impl PyBridge {
         #[new]
+        #[allow(clippy::too_many_arguments)] // one per argument that Python names
         #[pyo3(signature = (*, length, supports, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
         fn new(
             py: Python<'_>,
@@ -201,6 +202,7 @@ mod _core {
         }
 
         #[staticmethod]
+        #[allow(clippy::too_many_arguments)] // one per argument that Python names
         #[pyo3(signature = (*, spans, ends, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
         fn continuous(
             py: Python<'_>,
@@ -549,7 +551,7 @@ mod _core {
     #[pyfunction]
     #[pyo3(signature = (bridge, vehicle, *, speed, drive, modes, damping, damping_matrix, beta, step, approach, tail, gravity,
                         sections, recovery))]
-    #[allow(clippy::too_many_arguments)] // one per setting that Python names
+    #[allow(clippy::too_many_arguments)] // one per argument that Python names
     fn cross<'py>(
         py: Python<'py>,
         bridge: &PyBridge,

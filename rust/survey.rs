@@ -167,14 +167,21 @@ impl Survey<'_> {
     }
 }
 
+/// An end of the bridge.
+struct End {
+    node: usize,
+    supported: bool,
+    /// The shear just inside it, if looked at, and the sign with which an axle on the end adds to it.
+    shear: Option<(usize, f64)>,
+}
+
 /// The instants at which an axle stands on a section or on an end of the bridge.
 struct Passing<'a> {
     history: &'a History,
     /// Stops, left to right: node, position [m], and the section there if it is not an end of the bridge.
     stops: Vec<(usize, f64, Option<usize>)>,
     sections: usize,
-    /// The end nodes, whether each is supported, and the shear just inside it with the sign of an axle on the end.
-    ends: [(usize, bool, Option<(usize, f64)>); 2],
+    ends: [End; 2],
     /// For every axle the next stop ahead.
     ahead: Vec<usize>,
     state: Interpolated,
@@ -205,8 +212,8 @@ impl<'a> Passing<'a> {
             section.map(|s| (responses.range(quantity).start + s, sign))
         };
         let ends = [
-            (0, responses.supported(0), shear(Quantity::ShearRight, 0, -1.0)),
-            (last, responses.supported(last), shear(Quantity::ShearLeft, last, 1.0)),
+            End { node: 0, supported: responses.supported(0), shear: shear(Quantity::ShearRight, 0, -1.0) },
+            End { node: last, supported: responses.supported(last), shear: shear(Quantity::ShearLeft, last, 1.0) },
         ];
         let sections = responses.sections().len();
         Passing { history, stops, sections, ends, ahead, state: Interpolated::default() }
@@ -214,12 +221,12 @@ impl<'a> Passing<'a> {
 
     /// Whether nothing jumps as an axle passes a node: all but the free ends, whose tip the wheel drops on or off.
     fn continuous(&self, node: usize) -> bool {
-        self.ends.iter().all(|&(end, supported, _)| end != node || supported)
+        self.ends.iter().all(|end| end.node != node || end.supported)
     }
 
     /// The shear just inside an end of the bridge, and the sign of an axle on that end.
     fn tip_shear(&self, node: usize) -> Option<(usize, f64)> {
-        self.ends.iter().find(|end| end.0 == node).and_then(|end| end.2)
+        self.ends.iter().find(|end| end.node == node).and_then(|end| end.shear)
     }
 
     /// The next stop that an axle passes between instants i − 1 and i: its node, its section, and when, as a fraction.
@@ -290,11 +297,11 @@ impl Watched {
 
     #[inline(always)]
     fn take(&mut self, values: &Block, instant: f64) {
-        for i in 0..WIDTH {
-            let (above, below) = (values[i] > self.max[i], values[i] < self.min[i]);
-            self.max[i] = if above { values[i] } else { self.max[i] };
+        for (i, &value) in values.iter().enumerate() {
+            let (above, below) = (value > self.max[i], value < self.min[i]);
+            self.max[i] = if above { value } else { self.max[i] };
             self.max_at[i] = if above { instant } else { self.max_at[i] };
-            self.min[i] = if below { values[i] } else { self.min[i] };
+            self.min[i] = if below { value } else { self.min[i] };
             self.min_at[i] = if below { instant } else { self.min_at[i] };
         }
     }

@@ -33,10 +33,9 @@ fn extremes_bound_the_histories() {
             for (values, partners, extremes) in
                 [(dynamic, at_rest, &run.outcome.envelope.dynamic), (at_rest, dynamic, &run.outcome.envelope.at_rest)]
             {
-                for r in 0..run.analysis.rows.len() {
+                for (r, &scale) in scales.iter().enumerate() {
                     let column: Vec<f64> = values.iter().skip(r).step_by(run.analysis.rows.len()).copied().collect();
                     let partner: Vec<f64> = partners.iter().skip(r).step_by(run.analysis.rows.len()).copied().collect();
-                    let scale = scales[r];
                     for (extreme, sign) in [(&extremes.max[r], 1.0), (&extremes.min[r], -1.0)] {
                         let beyond = column.iter().map(|v| sign * v - sign * extreme.value).fold(f64::MIN, f64::max);
                         assert!(beyond <= ROUNDING * scale, "{name}, response {r}: exceeded by {beyond:e}");
