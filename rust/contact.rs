@@ -12,7 +12,7 @@ const SETTLED: f64 = 1e-13;
 /// The force of one axle, as increment p = P − P_st over its static load.
 ///
 /// With total shortening d and suspension shortening s since the static state, the tyre carries p = k_t (d − s), and the
-/// suspension the same through its spring and the friction f: p = k_s s + f − f₀, |f| ≤ F ([KTN73] Fig. 2, after
+/// suspension the same through its spring and the friction f: p = k_s s + f − f₀, |f| ≤ F (KTN73 Fig. 2, after
 /// Veletsos and Huang). The wheel does not pull: p ≥ −P_st.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact<L> {

@@ -32,7 +32,7 @@ const POLL_EVERY: usize = 1024;
 pub enum Drive {
     /// At the given speed throughout.
     ConstantSpeed,
-    /// Traction and resistance in balance on the level: the speed follows the slope under the axles ([KTN73] §4).
+    /// Traction and resistance in balance on the level: the speed follows the slope under the axles (KTN73 §4).
     ConstantTraction,
 }
 

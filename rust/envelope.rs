@@ -152,7 +152,7 @@ pub enum Sense {
 /// Which dynamic value is divided by which static one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ratio {
-    /// Dynamic extreme by static extreme, at different times in general: the impact factor of [KTN73].
+    /// Dynamic extreme by static extreme, at different times in general: the impact factor of KTN73.
     Extremes,
     /// Dynamic extreme by the static value at that time.
     AtDynamicExtreme,

@@ -1,11 +1,11 @@
 //! Deflected shapes of the bridge under unit actions: the basic flexibility matrix F*, then F of the actual bridge.
 //!
 //! Reference: H. Kishan and R. W. Traill-Nash, "Calculation of response and loading of highway bridges from modal
-//! coordinates", IABSE Publications 33 (1973), cited as [KTN73] here and in the files that follow.
+//! coordinates", IABSE Publications 33 (1973), cited as KTN73 here and in the files that follow.
 //!
 //! A statically determinate beam is integrated panel by panel, exactly. Restraints are then added in two layers: the
 //! other outer support makes it the *basic bridge*, the intermediate redundant supports make it the actual bridge.
-//! Each layer is [KTN73] Eqs. 12–14 with a unit action for the load. No stiffness matrix is formed or inverted except
+//! Each layer is KTN73 Eqs. 12–14 with a unit action for the load. No stiffness matrix is formed or inverted except
 //! K^R, of the order of the number of redundants.
 
 use faer::linalg::solvers::{Llt, Solve};
@@ -43,7 +43,7 @@ pub enum Restraint {
 /// Which structure is deflected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Structure {
-    /// The bridge without its intermediate redundant supports ([KTN73] §2.3).
+    /// The bridge without its intermediate redundant supports (KTN73 §2.3).
     Basic,
     /// The bridge as it is.
     Actual,
@@ -194,13 +194,13 @@ impl Flexibility {
         &self.layers[1].restraints
     }
 
-    /// R = −K^R y^R: the redundant reactions as loads (down) that undo the deflections y^R [m] ([KTN73] Eq. 13).
+    /// R = −K^R y^R: the redundant reactions as loads (down) that undo the deflections y^R [m] (KTN73 Eq. 13).
     pub fn redundant_reactions(&self, deflections: &[f64]) -> Vec<f64> {
         let opposite: Vec<f64> = deflections.iter().map(|y| -y).collect();
         self.layers[1].forces(&opposite)
     }
 
-    /// K^R, the inverse of F*_RR, by its Cholesky factor [N/m] ([KTN73] §2.3).
+    /// K^R, the inverse of F*_RR, by its Cholesky factor [N/m] (KTN73 §2.3).
     pub fn redundant_stiffness(&self) -> Mat<f64> {
         let n = self.redundants().len();
         let columns: Vec<Vec<f64>> =
@@ -214,7 +214,7 @@ impl Flexibility {
         Mat::from_fn(rows.len(), columns.len(), |i, j| lines[j].at_node(rows[i]))
     }
 
-    /// Nodes of the mass stations and the intermediate redundant supports, left to right: the order of F* in [KTN73].
+    /// Nodes of the mass stations and the intermediate redundant supports, left to right: the order of F* in KTN73.
     pub fn reference_nodes(&self, bridge: &Bridge) -> Vec<usize> {
         let mut nodes: Vec<usize> = bridge.stations().iter().map(|s| self.mesh.node_at(s.at)).collect();
         nodes.extend(self.redundants().iter().map(|r| r.node()));

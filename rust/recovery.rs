@@ -1,6 +1,6 @@
 //! Responses from modal states: force summation in one row per response, and plain superposition as its partner.
 //!
-//! [KTN73] Eqs. 9–16 are linear in the modal coordinates and the axle loads, so all of them fold into
+//! KTN73 Eqs. 9–16 are linear in the modal coordinates and the axle loads, so all of them fold into
 //! R = ρ·A + Σ g(x_k) P_k, with ρ_m the response to the static loads MΦΩ² of mode m and
 //! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::sequence`], for reading and for testing.
 
@@ -19,7 +19,7 @@ use crate::modes::Modes;
 /// How responses follow from the included modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Recovery {
-    /// Force summation, inertia and damping forces from Ã = A − Ā: [KTN73] Eqs. 9–16 with Eq. 11.
+    /// Force summation, inertia and damping forces from Ã = A − Ā: KTN73 Eqs. 9–16 with Eq. 11.
     ForceSummation,
     /// Force summation, inertia and damping forces from accelerations and velocities: Eq. 6 in place of Eqs. 9–11.
     ForceSummationByRates,
@@ -141,7 +141,7 @@ pub struct Rows {
     factors: Vec<Block>,
     /// The four coefficients of g (or IL), panel by panel, block by block.
     lines: Vec<[Block; 4]>,
-    /// φ/ω² along the bridge, for Ā_st ([KTN73] Eq. 9).
+    /// φ/ω² along the bridge, for Ā_st (KTN73 Eq. 9).
     static_shapes: Vec<Line>,
 }
 

@@ -1,4 +1,4 @@
-//! The recovery of [KTN73] step by step, Eqs. 5–20, as the paper writes it: the reference for [`crate::recovery`].
+//! The recovery of KTN73 step by step, Eqs. 5–20, as the paper writes it: the reference for [`crate::recovery`].
 //!
 //! Slow and plain on purpose. It shares the basic bridge with the engine, and nothing after that.
 

@@ -1,4 +1,4 @@
-//! The vehicle of [KTN73] Fig. 2: a rigid body on massless axles, each a tyre in series with a suspension that rubs.
+//! The vehicle of KTN73 Fig. 2: a rigid body on massless axles, each a tyre in series with a suspension that rubs.
 
 use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 
