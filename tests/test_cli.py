@@ -264,6 +264,8 @@ def test_interrupt(case: Path) -> None:
         import os, signal, sys, threading
         from spanwise.cli import main
 
+        # Started in the background, the process would inherit that interrupts are ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         sys.exit(main(["cross", {str(case)!r}, "--json", {str(case.parent / "run.json")!r}]))
     """
