@@ -14,6 +14,7 @@ pub mod flexibility;
 pub mod influence;
 pub mod modes;
 
+pub mod assembly;
 pub mod vehicle;
 
 pub mod lane;
