@@ -1,7 +1,8 @@
 //! Contact forces: the law of one axle with friction and lift-off, and the solve that couples all axles in a step.
 
+use crate::assembly::{ContactLaw, ContactPoint, FrictionElement};
+use crate::friction::{Law, Stroke};
 use crate::lane::Lane;
-use crate::vehicle::Axle;
 
 /// Most sweeps of the coupled solve; two to four are usual.
 const SWEEPS: usize = 200;
@@ -9,102 +10,263 @@ const SWEEPS: usize = 200;
 /// Change of a contact force, relative to the weight, at which it counts as found.
 const SETTLED: f64 = 1e-13;
 
+/// What a contact force follows: a weighted sum of the shortening d and its derivatives, δ = value·d + rate·ḋ +
+/// acceleration·d̈.
+#[derive(Debug, Clone, Copy)]
+pub struct Weights<L> {
+    /// Of d [-].
+    pub value: L,
+    /// Of ḋ [s]: c/k of a tyre.
+    pub rate: L,
+    /// Of d̈ [s²]; one for a mass in rigid contact, for which d and ḋ do not count.
+    pub acceleration: L,
+    /// Whether any lane has more than the value.
+    pub plain: bool,
+}
+
 /// The force of one axle, as increment p = P − P_st over its static load.
 ///
-/// With total shortening d and suspension shortening s since the static state, the tyre carries p = k_t (d − s), and the
-/// suspension the same through its spring and the friction f: p = k_s s + f − f₀, |f| ≤ F (KTN73 Fig. 2, after
-/// Veletsos and Huang). The wheel does not pull: p ≥ −P_st.
+/// With shortening d since the static state the tyre of an axle with mass carries p = k_t d + c_t ḋ. On a massless axle
+/// the suspension, shortened by s, carries the same force through its spring, damper and friction f:
+/// p = k_t (d − s) + c_t (ḋ − ṡ) = k_s s + c_s ṡ + f − f₀, |f| ≤ F (KTN73 Fig. 2, after Veletsos and Huang, without
+/// dampers there). The wheel does not pull: p ≥ −P_st, unless the contact is told to.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact<L> {
     /// Static load [N].
     pub static_load: L,
-    /// Tyre stiffness k_t [N/m].
-    pub tyre: L,
-    /// Suspension stiffness k_s [N/m].
-    pub suspension: L,
-    /// Both in series, the stiffness while sliding [N/m].
-    pub series: L,
-    /// Friction limit F [N].
-    pub limit: L,
-    /// Friction in the static state f₀ [N].
-    pub initial: L,
+    /// Least increment: −P_st, or −∞ for a contact that pulls [N].
+    floor: L,
+    /// Force per unit of δ: k_t [N/m], or a mass [kg].
+    stiffness: L,
+    /// What δ is.
+    pub weights: Weights<L>,
+    suspension: Option<Suspension<L>>,
+}
+
+/// The suspension of a massless axle, its rate taken as ṡ = σ s − η over a step.
+#[derive(Debug, Clone, Copy)]
+struct Suspension<L> {
+    /// k_s + σ c_s.
+    stiffness: L,
+    /// c_s.
+    damping: L,
+    /// k_t + σ c_t.
+    tyre: L,
+    /// c_t.
+    tyre_damping: L,
+    /// f₀.
+    initial: L,
+    law: Law<L>,
+    /// σ: 2/h by the trapezoidal rule, where nothing sticks; else 1/h, backward Euler, so that what sticks stands still.
+    per_step: L,
+    trapezoidal: bool,
+}
+
+impl<L: Lane> Suspension<L> {
+    /// η in ṡ = σ s − η.
+    fn past(&self, before: &Stroke<L>) -> L {
+        let past = self.per_step * before.shortening;
+        if self.trapezoidal { past + before.rate } else { past }
+    }
 }
 
 impl<L: Lane> Contact<L> {
-    /// Of an axle under its static load.
-    pub fn new(axle: &Axle, static_load: f64) -> Self {
+    /// Of a contact under gravity [m/s²], for steps of h [s]; a `bilateral` one pulls rather than lift off.
+    pub fn new(point: &ContactPoint, gravity: f64, h: f64, bilateral: bool) -> Self {
+        let static_load = point.share * gravity;
+        let (value, rate, acceleration, stiffness) = match point.law {
+            ContactLaw::Tyre { stiffness, damping } => (1.0, damping / stiffness, 0.0, stiffness),
+            ContactLaw::Series { tyre_stiffness, tyre_damping, .. } => {
+                (1.0, tyre_damping / tyre_stiffness, 0.0, tyre_stiffness)
+            }
+            ContactLaw::Mass(mass) => (0.0, 0.0, 1.0, mass),
+            ContactLaw::Force => (1.0, 0.0, 0.0, 0.0),
+        };
+        let suspension = match point.law {
+            ContactLaw::Series {
+                tyre_stiffness,
+                tyre_damping,
+                suspension_stiffness,
+                suspension_damping,
+                friction,
+            } => {
+                let trapezoidal = friction.limit == 0.0;
+                let damped = tyre_damping != 0.0 || suspension_damping != 0.0;
+                let per_step = match (damped, trapezoidal) {
+                    (false, _) => 0.0,
+                    (true, true) => 2.0 / h,
+                    (true, false) => 1.0 / h,
+                };
+                // In no time a damper holds the suspension.
+                (!damped || h > 0.0).then(|| Suspension {
+                    stiffness: L::splat(suspension_stiffness + per_step * suspension_damping),
+                    damping: L::splat(suspension_damping),
+                    tyre: L::splat(tyre_stiffness + per_step * tyre_damping),
+                    tyre_damping: L::splat(tyre_damping),
+                    initial: L::splat(friction.initial),
+                    law: Law::new(&friction, suspension_stiffness),
+                    per_step: L::splat(per_step),
+                    trapezoidal,
+                })
+            }
+            _ => None,
+        };
         Contact {
             static_load: L::splat(static_load),
-            tyre: L::splat(axle.tyre_stiffness),
-            suspension: L::splat(axle.suspension_stiffness),
-            series: L::splat(axle.sliding_stiffness()),
-            limit: L::splat(axle.friction_limit),
-            initial: L::splat(axle.initial_friction),
+            // A mass in rigid contact has no way to leave the road and come back.
+            floor: L::splat(if bilateral || acceleration != 0.0 { f64::NEG_INFINITY } else { -static_load }),
+            stiffness: L::splat(stiffness),
+            weights: Weights {
+                value: L::splat(value),
+                rate: L::splat(rate),
+                acceleration: L::splat(acceleration),
+                plain: rate == 0.0 && acceleration == 0.0,
+            },
+            suspension,
         }
     }
 
-    /// The increment p that solves p = law(u − S p) for suspension shortening `s` at the start of the step.
+    /// The suspension in the static state.
+    pub fn at_rest(&self) -> Stroke<L> {
+        Stroke::at_rest(self.suspension.map_or(L::splat(0.0), |s| s.initial))
+    }
+
+    /// The increment p that solves p = law(u − S p) for a suspension that was at `before` at the start of the step.
     ///
-    /// The law rises with d and S ≥ 0, so the solution is unique: whichever branch its trial confirms.
-    pub fn solve(&self, u: L, compliance: L, s: L) -> L {
-        let one = L::splat(1.0);
-        let mut p = self.tyre * (u - s) / (one + self.tyre * compliance);
-        let friction = self.initial + p - self.suspension * s;
-        let slips = self.limit.less(friction.magnitude());
-        if L::any(slips) {
-            // Sliding: p = k_t k_s/(k_t + k_s) (d + (±F − f₀)/k_s).
-            let limit = L::select(friction.less(L::splat(0.0)), -self.limit, self.limit);
-            let shortening = u + (limit - self.initial) / self.suspension;
-            p = L::select(slips, self.series * shortening / (one + self.series * compliance), p);
-        }
-        p.larger(-self.static_load)
+    /// The law rises with δ and S ≥ 0, so the solution is unique.
+    #[inline]
+    pub fn solve(&self, u: L, compliance: L, before: &Stroke<L>) -> L {
+        let softened = L::splat(1.0) + self.stiffness * compliance;
+        let p = match &self.suspension {
+            None => self.stiffness * u / softened,
+            Some(suspension) => {
+                // From the tyre p = A − B s, which the suspension meets.
+                let past = suspension.past(before);
+                let top = (self.stiffness * u + suspension.tyre_damping * past) / softened;
+                let slope = suspension.tyre / softened;
+                let a = top + suspension.initial + suspension.damping * past;
+                let (s, _) = suspension.law.meet(a, slope + suspension.stiffness, before);
+                top - slope * s
+            }
+        };
+        p.larger(self.floor)
     }
 
-    /// Suspension shortening and friction at the end of a step that ended with increment p.
-    pub fn settle(&self, p: L, s: L) -> (L, L) {
-        let trial = self.initial + p - self.suspension * s;
-        let friction = trial.smaller(self.limit).larger(-self.limit);
-        (s + (trial - friction) / self.suspension, friction)
+    /// The suspension at the end of a step that ended with increment p.
+    pub fn settle(&self, p: L, before: &Stroke<L>) -> Stroke<L> {
+        let Some(suspension) = &self.suspension else { return *before };
+        let past = suspension.past(before);
+        let a = p + suspension.initial + suspension.damping * past;
+        let (shortening, friction) = suspension.law.meet(a, suspension.stiffness, before);
+        Stroke { shortening, rate: suspension.per_step * shortening - past, friction }
     }
 }
 
-/// Solves p_k = law_k(u_k − Σ S_kj p_j) for all axles, starting from the p given; `compliance` is S by rows, and lanes
-/// that are `frozen` keep their p.
-///
-/// One axle after the other with its own equation solved exactly (nonlinear Gauss–Seidel): the laws rise and S is
-/// positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip and
-/// lift-off alike. A lane that has settled is frozen, hence no sample depends on its neighbours. False if one did not.
-pub fn solve<L: Lane>(
-    contacts: &[Contact<L>],
-    u: &[L],
-    compliance: &[L],
-    s: &[L],
-    p: &mut [L],
-    frozen: L::Mask,
-) -> bool {
-    let n = contacts.len();
-    let weight = contacts.iter().fold(L::splat(0.0), |sum, c| sum + c.static_load);
-    let tolerance = weight * L::splat(SETTLED);
-    let mut done = frozen;
-    for _ in 0..SWEEPS {
-        let mut change = L::splat(0.0);
-        for k in 0..n {
-            let row = &compliance[k * n..(k + 1) * n];
-            let mut others = u[k];
-            for (j, (s, p)) in row.iter().zip(p.iter()).enumerate() {
-                if j != k {
-                    others = others - *s * *p;
-                }
-            }
-            let next = L::select(done, p[k], contacts[k].solve(others, row[k], s[k]));
-            change = change.larger((next - p[k]).magnitude());
-            p[k] = next;
-        }
-        // A single axle is exact at once; a NaN never counts as settled.
-        done = done | change.less(tolerance);
-        if n == 1 || L::all(done) {
-            return true;
+/// A friction element between parts that have mass: f − f₀ is its force, beside a spring that is part of the vehicle.
+#[derive(Debug, Clone, Copy)]
+pub struct Rubbing<L> {
+    initial: L,
+    law: Law<L>,
+    /// Whether time passes in a step; if not, nothing moves.
+    moves: bool,
+}
+
+impl<L: Lane> Rubbing<L> {
+    /// The same in every lane, for steps of h [s].
+    pub fn new(element: &FrictionElement, h: f64) -> Self {
+        Rubbing {
+            moves: h > 0.0,
+            initial: L::splat(element.friction.initial),
+            law: Law::new(&element.friction, element.stiffness),
         }
     }
-    false
+
+    /// In the static state.
+    pub fn at_rest(&self) -> Stroke<L> {
+        Stroke::at_rest(self.initial)
+    }
+
+    /// Force increment for shortening u − S (f − f₀), and the element then.
+    fn solve(&self, u: L, compliance: L, before: &Stroke<L>) -> (L, Stroke<L>) {
+        if !self.moves {
+            return (before.friction - self.initial, *before);
+        }
+        let stiffness = L::splat(1.0) / compliance;
+        let (shortening, friction) = self.law.meet(self.initial + stiffness * u, stiffness, before);
+        (friction - self.initial, Stroke { shortening, rate: before.rate, friction })
+    }
+}
+
+/// Contacts, then friction elements: the unknown forces of a step are numbered in this order.
+#[derive(Debug, Clone)]
+pub struct Elements<L> {
+    /// All contacts.
+    pub contacts: Vec<Contact<L>>,
+    /// All friction elements between parts that have mass.
+    pub rubbing: Vec<Rubbing<L>>,
+}
+
+impl<L: Lane> Elements<L> {
+    /// Number of unknown forces.
+    pub fn len(&self) -> usize {
+        self.contacts.len() + self.rubbing.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Solves p_k = law_k(u_k − Σ S_kj p_j) for all elements, starting from the p given; `compliance` is S by rows, and
+    /// lanes that are `frozen` keep their p.
+    ///
+    /// One element after the other with its own equation solved exactly (nonlinear Gauss–Seidel): the laws rise and S
+    /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
+    /// and lift-off alike. (Tyre damping adds a part to S that is not symmetric, of the order of the step.) A lane that
+    /// has settled is frozen, hence no sample depends on its neighbours. False if one did not.
+    pub fn solve(&self, u: &[L], compliance: &[L], before: &[Stroke<L>], p: &mut [L], frozen: L::Mask) -> bool {
+        let n = self.len();
+        let weight = self.contacts.iter().fold(L::splat(0.0), |sum, c| sum + c.static_load);
+        let tolerance = weight * L::splat(SETTLED);
+        let mut done = frozen;
+        for _ in 0..SWEEPS {
+            let mut change = L::splat(0.0);
+            for k in 0..n {
+                let row = &compliance[k * n..(k + 1) * n];
+                let mut others = u[k];
+                for (j, (s, p)) in row.iter().zip(p.iter()).enumerate() {
+                    if j != k {
+                        others = others - *s * *p;
+                    }
+                }
+                let found = match self.contacts.get(k) {
+                    Some(contact) => contact.solve(others, row[k], &before[k]),
+                    None => self.rubbing[k - self.contacts.len()].solve(others, row[k], &before[k]).0,
+                };
+                let next = L::select(done, p[k], found);
+                change = change.larger((next - p[k]).magnitude());
+                p[k] = next;
+            }
+            // A single axle is exact at once; a NaN never counts as settled.
+            done = done | change.less(tolerance);
+            if n <= 1 || L::all(done) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Commits suspensions and friction elements to the end of a step that ended with the forces p.
+    pub fn settle(&self, u: &[L], compliance: &[L], p: &[L], strokes: &mut [Stroke<L>]) {
+        let n = self.len();
+        for (k, contact) in self.contacts.iter().enumerate() {
+            strokes[k] = contact.settle(p[k], &strokes[k]);
+        }
+        for (i, rubbing) in self.rubbing.iter().enumerate() {
+            let k = self.contacts.len() + i;
+            let row = &compliance[k * n..(k + 1) * n];
+            let others = (0..n).filter(|&j| j != k).fold(u[k], |sum, j| sum - row[j] * p[j]);
+            strokes[k] = rubbing.solve(others, row[k], &strokes[k]).1;
+        }
+    }
 }

@@ -40,6 +40,9 @@ pub trait Lane:
         Self::select(self.less(other), self, other)
     }
 
+    /// e to the power of self, the same bits on every machine.
+    fn exp(self) -> Self;
+
     /// Magnitude.
     fn magnitude(self) -> Self {
         Self::select(self.less(Self::splat(0.0)), -self, self)
@@ -67,5 +70,10 @@ impl Lane for f64 {
 
     fn any(mask: bool) -> bool {
         mask
+    }
+
+    fn exp(self) -> Self {
+        // Not the standard library's, which is that of the platform.
+        libm::exp(self)
     }
 }

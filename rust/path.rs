@@ -1,8 +1,10 @@
-//! Where the axles are and which mode deflections lie under them: prescribed beforehand, or following the body.
+//! Where the contacts are and what lies under them: prescribed beforehand, or following the vehicles.
 
 use crate::lane::Lane;
 use crate::line::{Line, Mesh};
-use crate::step::Geometry;
+use crate::newmark::Coordinate;
+use crate::road::Road;
+use crate::step::{Geometry, Surface};
 
 /// The included modes along the bridge, laid out for evaluation at one point after another.
 #[derive(Debug, Clone)]
@@ -38,153 +40,267 @@ impl ModeShapes {
         c0 + fraction * (c1 + fraction * (c2 + fraction * c3))
     }
 
-    fn slope(&self, panel: usize, fraction: f64, mode: usize) -> f64 {
+    /// Value, slope and curvature.
+    fn rates(&self, panel: usize, fraction: f64, mode: usize) -> [f64; 3] {
         let [_, c1, c2, c3] = self.cubics[panel * self.modes + mode];
-        (c1 + fraction * (2.0 * c2 + fraction * 3.0 * c3)) / self.mesh.width(panel)
+        let width = self.mesh.width(panel);
+        [
+            self.value(panel, fraction, mode),
+            (c1 + fraction * (2.0 * c2 + fraction * 3.0 * c3)) / width,
+            (2.0 * c2 + fraction * 6.0 * c3) / width.powi(2),
+        ]
     }
 }
 
-/// Prescribed motion: equal steps in space, so that the table serves every sample whatever its speed.
+/// A road on the way of one vehicle, its unevenness fading in from where the vehicle starts.
 #[derive(Debug, Clone)]
-pub struct Prescribed<'a> {
-    shapes: &'a ModeShapes,
-    /// Distance of each axle behind the first [m].
-    behind: Vec<f64>,
-    /// Front axle at the start [m].
-    start: f64,
-    /// Advance per step [m].
-    advance: f64,
-    step: usize,
-    /// Φ⁰ by step, axle and mode.
-    table: Vec<f64>,
+pub struct Pavement<'a> {
+    /// The road.
+    pub road: &'a Road,
+    /// Where the vehicle's front starts, from the left end of the bridge [m].
+    pub start: f64,
+    /// Way on which the unevenness fades in [m].
+    pub ramp: f64,
+    /// +1 for travel to the right, −1 to the left.
+    pub direction: f64,
 }
 
-impl<'a> Prescribed<'a> {
-    /// Front axle from `start` in `steps` equal steps of `advance` [m], the others `behind` it [m].
-    pub fn new(shapes: &'a ModeShapes, behind: Vec<f64>, start: f64, advance: f64, steps: usize) -> Self {
-        let mut path = Prescribed { shapes, behind, start, advance, step: 0, table: Vec::new() };
-        path.table.reserve_exact((steps + 1) * path.behind.len() * shapes.modes);
+impl Pavement<'_> {
+    fn at(&self, x: f64) -> Surface<f64> {
+        let way = self.direction * (x - self.start);
+        if self.road.is_smooth() || way <= 0.0 && self.ramp > 0.0 {
+            return Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+        }
+        let point = self.road.at(x);
+        if way >= self.ramp {
+            return Surface { elevation: point.elevation, slope: point.slope, curvature: point.curvature };
+        }
+        // 6t⁵ − 15t⁴ + 10t³: no jump in value, slope or curvature at either end.
+        let t = way / self.ramp;
+        let fade = t * t * t * (10.0 + t * (6.0 * t - 15.0));
+        let fade_1 = self.direction * 30.0 * t * t * (1.0 - t).powi(2) / self.ramp;
+        let fade_2 = 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t) / self.ramp.powi(2);
+        Surface {
+            elevation: fade * point.elevation,
+            slope: fade * point.slope + fade_1 * point.elevation,
+            curvature: fade * point.curvature + 2.0 * fade_1 * point.slope + fade_2 * point.elevation,
+        }
+    }
+}
+
+/// What is common to both ways of moving: the bridge, and under each contact the road of its vehicle.
+#[derive(Debug, Clone)]
+pub struct Ground<'a> {
+    /// The modes along the bridge.
+    pub shapes: &'a ModeShapes,
+    /// Roads, vehicle by vehicle.
+    pub pavements: Vec<Option<Pavement<'a>>>,
+    /// The vehicle of each contact.
+    pub vehicle: Vec<usize>,
+}
+
+impl Ground<'_> {
+    fn surface(&self, contact: usize, x: f64) -> Surface<f64> {
+        let level = Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+        self.pavements[self.vehicle[contact]].as_ref().map_or(level, |pavement| pavement.at(x))
+    }
+}
+
+/// Prescribed motion: known beforehand, so that one table serves every sample that moves alike.
+#[derive(Debug, Clone)]
+pub struct Prescribed<'a, M> {
+    ground: Ground<'a>,
+    /// Motion of a contact along the bridge at a step.
+    motion: M,
+    step: usize,
+    /// How many derivatives the table holds, the value included: one or three.
+    kinds: usize,
+    /// Φ⁰ and its derivatives by step, contact and mode.
+    table: Vec<f64>,
+    surfaces: Vec<Surface<f64>>,
+}
+
+impl<'a, M: Fn(usize, usize) -> Coordinate<f64>> Prescribed<'a, M> {
+    /// For a number of `steps`; with `slopes` and curvatures of the modes if the step asks for them.
+    pub fn new(ground: Ground<'a>, motion: M, steps: usize, slopes: bool) -> Self {
+        let kinds = if slopes { 3 } else { 1 };
+        let (shapes, contacts) = (ground.shapes, ground.vehicle.len());
+        let mut table = Vec::new();
+        table.reserve_exact((steps + 1) * contacts * shapes.modes * kinds);
         for step in 0..=steps {
-            for axle in 0..path.behind.len() {
-                let x = path.place(step, axle);
+            for contact in 0..contacts {
+                let x = motion(step, contact).x;
                 match shapes.mesh.panel_at(x) {
                     Some(panel) => {
                         let fraction = shapes.mesh.fraction(panel, x);
-                        path.table.extend((0..shapes.modes).map(|m| shapes.value(panel, fraction, m)));
+                        for mode in 0..shapes.modes {
+                            if slopes {
+                                table.extend(shapes.rates(panel, fraction, mode));
+                            } else {
+                                table.push(shapes.value(panel, fraction, mode));
+                            }
+                        }
                     }
-                    None => path.table.extend(std::iter::repeat_n(0.0, shapes.modes)),
+                    None => table.extend(std::iter::repeat_n(0.0, shapes.modes * kinds)),
                 }
             }
         }
+        let mut path = Prescribed { ground, motion, step: 0, kinds, table, surfaces: Vec::new() };
+        path.look_down();
         path
     }
 
-    fn place(&self, step: usize, axle: usize) -> f64 {
-        self.start + self.advance * step as f64 - self.behind[axle]
+    fn look_down(&mut self) {
+        self.surfaces.clear();
+        for contact in 0..self.ground.vehicle.len() {
+            let x = (self.motion)(self.step, contact).x;
+            self.surfaces.push(self.ground.surface(contact, x));
+        }
+    }
+
+    fn entry(&self, contact: usize, mode: usize) -> usize {
+        ((self.step * self.ground.vehicle.len() + contact) * self.ground.shapes.modes + mode) * self.kinds
     }
 }
 
-impl<L: Lane> Geometry<L> for Prescribed<'_> {
-    fn predict(&mut self, _travel: L, _pitch: L) {
+impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed<'_, M> {
+    fn advance(&mut self) {
         self.step += 1;
+        self.look_down();
     }
 
-    fn follow(&mut self, _travel: L, _pitch: L) -> L::Mask {
+    fn follow(&mut self, _contact: usize, _motion: Coordinate<L>, _new_step: bool) -> L::Mask {
         L::never()
     }
 
-    fn shape(&self, axle: usize, mode: usize) -> L {
-        L::splat(self.table[(self.step * self.behind.len() + axle) * self.shapes.modes + mode])
+    fn motion(&self, contact: usize) -> Coordinate<L> {
+        let Coordinate { x, v, a } = (self.motion)(self.step, contact);
+        Coordinate { x: L::splat(x), v: L::splat(v), a: L::splat(a) }
     }
 
-    fn slope(&self, axle: usize, mode: usize) -> L {
-        let mesh = &self.shapes.mesh;
-        let x = self.place(self.step, axle);
-        L::splat(mesh.panel_at(x).map_or(0.0, |panel| self.shapes.slope(panel, mesh.fraction(panel, x), mode)))
+    fn shape(&self, contact: usize, mode: usize) -> L {
+        L::splat(self.table[self.entry(contact, mode)])
     }
 
-    fn position(&self, axle: usize) -> L {
-        L::splat(self.place(self.step, axle))
+    fn slope(&self, contact: usize, mode: usize) -> L {
+        L::splat(self.table[self.entry(contact, mode) + 1])
+    }
+
+    fn curvature(&self, contact: usize, mode: usize) -> L {
+        L::splat(self.table[self.entry(contact, mode) + 2])
+    }
+
+    fn surface(&self, contact: usize) -> Surface<L> {
+        let Surface { elevation, slope, curvature } = self.surfaces[contact];
+        Surface { elevation: L::splat(elevation), slope: L::splat(slope), curvature: L::splat(curvature) }
     }
 }
 
-/// Free rolling: the axles go with the body, x_k = X + a_k − h θ, and everything is evaluated where they are.
+/// Free motion: each contact goes where its vehicle or a schedule has it, and everything is evaluated there.
 #[derive(Debug, Clone)]
-pub struct Rolling<'a> {
-    shapes: &'a ModeShapes,
-    arms: Vec<f64>,
-    cg_height: f64,
+pub struct Free<'a, M> {
+    ground: Ground<'a>,
+    /// Prescribed motion of a contact along the bridge at a step, or none where it follows its vehicle.
+    motion: M,
+    step: usize,
+    /// Whether a vehicle travels to the left.
+    mirrored: Vec<bool>,
     /// Change of position [m] from pass to pass at which an axle counts as placed: what remains is far less.
     tolerance: f64,
-    positions: Vec<f64>,
-    /// The panel of each axle, from its predicted position and held through the step, so that passes converge.
+    motions: Vec<Coordinate<f64>>,
+    /// The panel of each contact, from its predicted position and held through the step, so that passes converge.
     panels: Vec<Option<usize>>,
-    /// φ and φ' by axle and mode.
-    values: Vec<[f64; 2]>,
+    /// φ, φ' and φ'' by contact and mode.
+    values: Vec<[f64; 3]>,
+    surfaces: Vec<Surface<f64>>,
 }
 
-impl<'a> Rolling<'a> {
-    /// With the centre of mass at `travel` [m], not pitched.
-    pub fn new(shapes: &'a ModeShapes, arms: Vec<f64>, cg_height: f64, travel: f64) -> Self {
-        let axles = arms.len();
-        let mut path = Rolling {
-            shapes,
-            arms,
-            cg_height,
-            tolerance: 1e-11 * shapes.mesh.length(),
-            positions: vec![0.0; axles],
-            panels: vec![None; axles],
-            values: vec![[0.0; 2]; axles * shapes.modes],
+impl<'a, M: Fn(usize, usize) -> Option<Coordinate<f64>>> Free<'a, M> {
+    /// With the contacts at `start`, in the direction of the bridge.
+    pub fn new(ground: Ground<'a>, motion: M, mirrored: Vec<bool>, start: Vec<Coordinate<f64>>) -> Self {
+        let (contacts, modes) = (start.len(), ground.shapes.modes);
+        let mut path = Free {
+            tolerance: 1e-11 * ground.shapes.mesh.length(),
+            ground,
+            motion,
+            step: 0,
+            mirrored,
+            motions: start.clone(),
+            panels: vec![None; contacts],
+            values: vec![[0.0; 3]; contacts * modes],
+            surfaces: vec![Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 }; contacts],
         };
-        path.predict(travel, 0.0);
+        for (contact, motion) in start.into_iter().enumerate() {
+            path.put(contact, motion, true);
+        }
         path
     }
 
-    fn place(&mut self, axle: usize, x: f64) {
-        self.positions[axle] = x;
-        let values = &mut self.values[axle * self.shapes.modes..(axle + 1) * self.shapes.modes];
-        match self.panels[axle] {
+    /// Stops a contact where it is.
+    pub fn stop(&mut self, contact: usize) {
+        let Coordinate { x, .. } = self.motions[contact];
+        self.motions[contact] = Coordinate { x, v: 0.0, a: 0.0 };
+    }
+
+    fn put(&mut self, contact: usize, motion: Coordinate<f64>, new_step: bool) {
+        let (shapes, x) = (self.ground.shapes, motion.x);
+        if new_step {
+            self.panels[contact] = shapes.mesh.panel_at(x);
+        }
+        self.motions[contact] = motion;
+        self.surfaces[contact] = self.ground.surface(contact, x);
+        let values = &mut self.values[contact * shapes.modes..(contact + 1) * shapes.modes];
+        match self.panels[contact] {
             Some(panel) => {
-                let fraction = self.shapes.mesh.fraction(panel, x);
+                let fraction = shapes.mesh.fraction(panel, x);
                 for (m, value) in values.iter_mut().enumerate() {
-                    *value = [self.shapes.value(panel, fraction, m), self.shapes.slope(panel, fraction, m)];
+                    *value = shapes.rates(panel, fraction, m);
                 }
             }
-            None => values.fill([0.0; 2]),
+            None => values.fill([0.0; 3]),
         }
     }
 }
 
-impl Geometry<f64> for Rolling<'_> {
-    fn predict(&mut self, travel: f64, pitch: f64) {
-        for axle in 0..self.arms.len() {
-            let x = travel + self.arms[axle] - self.cg_height * pitch;
-            self.panels[axle] = self.shapes.mesh.panel_at(x);
-            self.place(axle, x);
+impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Geometry<f64> for Free<'_, M> {
+    fn advance(&mut self) {
+        self.step += 1;
+        for contact in 0..self.motions.len() {
+            if let Some(motion) = (self.motion)(self.step, contact) {
+                self.put(contact, motion, true);
+            }
         }
     }
 
-    fn follow(&mut self, travel: f64, pitch: f64) -> bool {
-        let mut moving = false;
-        for axle in 0..self.arms.len() {
-            let x = travel + self.arms[axle] - self.cg_height * pitch;
-            if (x - self.positions[axle]).abs() > self.tolerance {
-                self.place(axle, x);
-                moving = true;
-            }
+    fn follow(&mut self, contact: usize, motion: Coordinate<f64>, new_step: bool) -> bool {
+        let motion = match self.mirrored[self.ground.vehicle[contact]] {
+            false => motion,
+            true => Coordinate { x: self.ground.shapes.mesh.length() - motion.x, v: -motion.v, a: -motion.a },
+        };
+        let moving = new_step || (motion.x - self.motions[contact].x).abs() > self.tolerance;
+        if moving {
+            self.put(contact, motion, new_step);
         }
         moving
     }
 
-    fn shape(&self, axle: usize, mode: usize) -> f64 {
-        self.values[axle * self.shapes.modes + mode][0]
+    fn motion(&self, contact: usize) -> Coordinate<f64> {
+        self.motions[contact]
     }
 
-    fn slope(&self, axle: usize, mode: usize) -> f64 {
-        self.values[axle * self.shapes.modes + mode][1]
+    fn shape(&self, contact: usize, mode: usize) -> f64 {
+        self.values[contact * self.ground.shapes.modes + mode][0]
     }
 
-    fn position(&self, axle: usize) -> f64 {
-        self.positions[axle]
+    fn slope(&self, contact: usize, mode: usize) -> f64 {
+        self.values[contact * self.ground.shapes.modes + mode][1]
+    }
+
+    fn curvature(&self, contact: usize, mode: usize) -> f64 {
+        self.values[contact * self.ground.shapes.modes + mode][2]
+    }
+
+    fn surface(&self, contact: usize) -> Surface<f64> {
+        self.surfaces[contact]
     }
 }

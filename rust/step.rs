@@ -1,13 +1,18 @@
-//! One time step of bridge and vehicle together, written once for every kind of lane.
+//! One time step of bridge and vehicles together, written once for every kind of lane.
 //!
-//! Newmark's method with γ = ½ for the modal coordinates and the body; everything at the same instant t_{n+1}. The
-//! modes are coupled to the body only through the contact forces, so these are the unknowns: d_k = u_k − Σ S_kj p_j.
+//! Newmark's method with γ = ½ for the modal coordinates and the vehicles; everything at the same instant t_{n+1}. The
+//! modes are coupled to the vehicles only through the contact forces, and bodies that rub on each other through friction,
+//! so these are the unknowns: each follows δ_k = u_k − Σ S_kj p_j.
 
-use faer::Mat;
+use std::ops::Range;
 
-use crate::contact::{self, Contact};
+use crate::assembly::Assembly;
+use crate::contact::{Contact, Elements, Rubbing};
+use crate::friction::Stroke;
 use crate::lane::Lane;
-use crate::vehicle::Vehicle;
+use crate::modal::{ModalDamping, ModalSolve};
+use crate::newmark::{Coordinate, Newmark};
+use crate::rig::Rig;
 
 /// Most passes in which axle positions and surge follow the corrected state; two or three are usual.
 const PASSES: usize = 50;
@@ -15,181 +20,127 @@ const PASSES: usize = 50;
 /// Change of the surge [m/s²] from pass to pass at which it counts as found: what remains is a small fraction of it.
 const SURGE_SETTLED: f64 = 1e-8;
 
-/// Where the axles stand: mode shapes under them, from a table shared by all lanes or evaluated as the body moves.
-pub trait Geometry<L: Lane> {
-    /// Moves on by one step, to where the predicted travel and pitch of the body put the axles.
-    fn predict(&mut self, travel: L, pitch: L);
-
-    /// Lets the axles follow the corrected travel and pitch: lanes in which one had still to move. In all other lanes
-    /// nothing changes, to the bit.
-    fn follow(&mut self, travel: L, pitch: L) -> L::Mask;
-
-    /// Φ⁰: the mode's deflection under the axle [kg^-½], zero off the bridge.
-    fn shape(&self, axle: usize, mode: usize) -> L;
-
-    /// Slope of the mode under the axle [kg^-½/m].
-    fn slope(&self, axle: usize, mode: usize) -> L;
-
-    /// Position of the axle from the left end of the bridge [m].
-    fn position(&self, axle: usize) -> L;
-}
-
-/// A coordinate with its first and second time derivatives.
+/// The road under a wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coordinate<L> {
-    /// Value.
-    pub x: L,
-    /// Velocity.
-    pub v: L,
-    /// Acceleration.
-    pub a: L,
+pub struct Surface<L> {
+    /// Elevation, up [m].
+    pub elevation: L,
+    /// Its first derivative along the bridge [-].
+    pub slope: L,
+    /// Its second derivative [1/m].
+    pub curvature: L,
 }
 
-impl<L: Lane> Coordinate<L> {
-    /// At rest at zero.
-    pub fn rest() -> Self {
-        let zero = L::splat(0.0);
-        Coordinate { x: zero, v: zero, a: zero }
-    }
+/// Where the contacts stand and how they move: prescribed for all lanes alike, or following the vehicles.
+pub trait Geometry<L: Lane> {
+    /// Moves on by one step; contacts whose motion is prescribed go to where they are then.
+    fn advance(&mut self);
+
+    /// Puts a contact that follows its vehicle where that has it, in a new step or in another pass of the same; `motion`
+    /// counts from the end of the bridge at which the vehicle enters, in its own direction. Says in which lanes it had
+    /// still to move; in all others nothing changes, to the bit.
+    fn follow(&mut self, contact: usize, motion: Coordinate<L>, new_step: bool) -> L::Mask;
+
+    /// Position from the left end of the bridge, speed and acceleration along it.
+    fn motion(&self, contact: usize) -> Coordinate<L>;
+
+    /// Φ⁰: the mode's deflection under the contact [kg^-½], zero off the bridge.
+    fn shape(&self, contact: usize, mode: usize) -> L;
+
+    /// Slope of the mode under the contact [kg^-½/m].
+    fn slope(&self, contact: usize, mode: usize) -> L;
+
+    /// Second derivative of the mode under the contact [kg^-½/m²].
+    fn curvature(&self, contact: usize, mode: usize) -> L;
+
+    /// The road under the contact.
+    fn surface(&self, contact: usize) -> Surface<L>;
 }
 
-/// The state of bridge and vehicle at one instant.
+/// The state of bridge and vehicles at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State<L> {
     /// Modal coordinates A [m kg^½].
     pub modes: Vec<Coordinate<L>>,
-    /// Body, down from its static position [m].
-    pub heave: Coordinate<L>,
-    /// Body, nose down [rad].
-    pub pitch: Coordinate<L>,
-    /// Centre of mass along the road, from the left end of the bridge [m].
-    pub travel: Coordinate<L>,
-    /// Axle loads less their static values [N].
+    /// Coordinates of the vehicles from their static state, one vehicle after another [m, rad].
+    pub coordinates: Vec<Coordinate<L>>,
+    /// Centre of mass of each vehicle, from the end of the bridge at which it enters and in its own direction [m]. That
+    /// of one whose motion is prescribed is left to the geometry.
+    pub travel: Vec<Coordinate<L>>,
+    /// Increments over their static values: contact forces, then forces of friction elements [N].
     pub increments: Vec<L>,
-    /// Suspension shortenings since the static state [m].
-    pub shortenings: Vec<L>,
-    /// Friction forces [N].
-    pub friction: Vec<L>,
+    /// Suspensions of the contacts, then friction elements.
+    pub strokes: Vec<Stroke<L>>,
+    /// Forces along the road at the contacts, in the direction of travel [N].
+    pub along: Vec<L>,
 }
 
-/// Newmark's coefficients with γ = ½.
+/// How hard a vehicle brakes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brakes<L> {
+    /// Deceleration asked for, shared out among the wheels like their static loads [m/s²].
+    pub demand: L,
+    /// Coefficient of friction between tyre and road: no wheel brakes with more than this times its load.
+    pub adhesion: L,
+    /// How far the brakes are on, from 0 to 1.
+    pub level: L,
+}
+
+/// What moves a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Propulsion {
+    /// Its motion is prescribed.
+    Prescribed,
+    /// It rolls freely, traction and resistance in balance on the level, but for its brakes.
+    Rolling,
+}
+
+/// A vehicle to be stepped.
 #[derive(Debug, Clone, Copy)]
-struct Newmark<L> {
-    h: L,
-    half_h: L,
-    /// h² (½ − β).
-    old: L,
-    /// h² β.
-    new: L,
+pub struct Moving<'a> {
+    /// Its matrices and contacts.
+    pub assembly: &'a Assembly,
+    /// What moves it.
+    pub propulsion: Propulsion,
+    /// +1 if it travels to the right, −1 to the left.
+    pub direction: f64,
 }
 
-impl<L: Lane> Newmark<L> {
-    fn predict(&self, c: Coordinate<L>) -> Coordinate<L> {
-        Coordinate { x: c.x + self.h * c.v + self.old * c.a, v: c.v + self.half_h * c.a, a: c.a }
-    }
-
-    fn correct(&self, predicted: Coordinate<L>, a: L) -> Coordinate<L> {
-        Coordinate { x: predicted.x + self.new * a, v: predicted.v + self.half_h * a, a }
-    }
-}
-
-/// Damping of the included modes, D = ΦᵀCΦ.
+/// A vehicle's part in the step.
 #[derive(Debug, Clone)]
-pub enum ModalDamping {
-    /// Ratios to critical, one per mode: D = diag(2ζω).
-    Classical(Vec<f64>),
-    /// Full D [1/s].
-    Coupled(Mat<f64>),
+struct Unit<L> {
+    rig: Rig<L>,
+    propulsion: Propulsion,
+    direction: f64,
+    contacts: Range<usize>,
+    /// Indices among the unknown forces.
+    rubbing: Range<usize>,
+    coordinates: Range<usize>,
+    /// Contacts ahead of the centre of mass [m].
+    positions: Vec<L>,
+    /// Mass that rests on each contact [kg].
+    shares: Vec<L>,
+    brakes: Option<Brakes<L>>,
 }
 
-/// How modal accelerations follow from modal forces: (I + ½hD + βh²Ω²)⁻¹.
-#[derive(Debug, Clone)]
-enum ModalSolve<L> {
-    Diagonal { damping: Vec<L>, inverse: Vec<L> },
-    Full { damping: Mat<f64>, inverse: Mat<f64> },
-}
-
-impl<L: Lane> ModalSolve<L> {
-    fn new(omega: &[f64], damping: &ModalDamping, h: f64, beta: f64) -> Self {
-        match damping {
-            ModalDamping::Classical(ratios) => {
-                let d: Vec<f64> = omega.iter().zip(ratios).map(|(w, z)| 2.0 * z * w).collect();
-                let inverse = omega.iter().zip(&d).map(|(w, d)| 1.0 / (1.0 + 0.5 * h * d + beta * h * h * w * w));
-                ModalSolve::Diagonal {
-                    inverse: inverse.map(L::splat).collect(),
-                    damping: d.into_iter().map(L::splat).collect(),
-                }
-            }
-            ModalDamping::Coupled(d) => {
-                let n = omega.len();
-                let matrix = Mat::from_fn(n, n, |i, j| {
-                    0.5 * h * d[(i, j)] + if i == j { 1.0 + beta * h * h * omega[i].powi(2) } else { 0.0 }
-                });
-                use faer::linalg::solvers::DenseSolveCore;
-                ModalSolve::Full { damping: d.clone(), inverse: matrix.partial_piv_lu().inverse() }
-            }
-        }
-    }
-
-    fn damping_force(&self, mode: usize, predicted: &[Coordinate<L>]) -> L {
-        match self {
-            ModalSolve::Diagonal { damping, .. } => damping[mode] * predicted[mode].v,
-            ModalSolve::Full { damping, .. } => {
-                predicted.iter().enumerate().fold(L::splat(0.0), |sum, (j, c)| sum + L::splat(damping[(mode, j)]) * c.v)
-            }
-        }
-    }
-
-    fn apply(&self, forces: &[L], accelerations: &mut [L]) {
-        match self {
-            ModalSolve::Diagonal { inverse, .. } => {
-                for ((a, f), e) in accelerations.iter_mut().zip(forces).zip(inverse) {
-                    *a = *e * *f;
-                }
-            }
-            ModalSolve::Full { inverse, .. } => {
-                for (i, a) in accelerations.iter_mut().enumerate() {
-                    *a = forces
-                        .iter()
-                        .enumerate()
-                        .fold(L::splat(0.0), |sum, (j, f)| sum + L::splat(inverse[(i, j)]) * *f);
-                }
-            }
-        }
+impl<L: Lane> Unit<L> {
+    /// Global number of an element of this vehicle.
+    fn element(&self, own: usize) -> usize {
+        if own < self.contacts.len() { self.contacts.start + own } else { self.rubbing.start + own - self.contacts.len() }
     }
 }
 
-fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
-    a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
-}
-
-/// The vehicle of one sample, as the step sees it.
-#[derive(Debug, Clone)]
-pub struct Body<L> {
-    /// Mass [kg].
-    pub mass: L,
-    /// Pitch inertia [kg m²].
-    pub pitch_inertia: L,
-    /// Height of the centre of mass above the road [m].
-    pub cg_height: L,
-    /// Laws of the contact forces, axle by axle.
-    pub contacts: Vec<Contact<L>>,
-    /// Distances of the axles ahead of the centre of mass [m].
-    pub arms: Vec<L>,
-}
-
-impl<L: Lane> Body<L> {
-    /// The same vehicle in every lane, under gravity [m/s²].
-    pub fn new(vehicle: &Vehicle, gravity: f64) -> Self {
-        let loads = vehicle.static_loads(gravity);
-        Body {
-            mass: L::splat(vehicle.mass()),
-            pitch_inertia: L::splat(vehicle.pitch_inertia()),
-            cg_height: L::splat(vehicle.cg_height()),
-            contacts: vehicle.axles().iter().zip(loads).map(|(axle, load)| Contact::new(axle, load)).collect(),
-            arms: vehicle.axles().iter().map(|axle| L::splat(axle.position)).collect(),
-        }
-    }
+/// Settings that all vehicles share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scheme {
+    /// Step [s].
+    pub h: f64,
+    /// Newmark's β [-].
+    pub beta: f64,
+    /// Gravity [m/s²].
+    pub gravity: f64,
+    /// Whether wheels leave the road rather than pull.
+    pub lift_off: bool,
 }
 
 /// Why a step failed.
@@ -207,78 +158,177 @@ pub struct Stepper<L> {
     newmark: Newmark<L>,
     omega2: Vec<L>,
     modal: ModalSolve<L>,
-    body: Body<L>,
-    /// Whether the vehicle rolls freely along the bridge (constant traction) instead of at a prescribed motion.
-    rolling: bool,
-    /// Accelerations of the body at the axles under unit axle loads, 1/m + a_i a_j/J, by rows [1/kg].
-    body_receptance: Vec<L>,
+    units: Vec<Unit<L>>,
+    elements: Elements<L>,
     predicted: Vec<Coordinate<L>>,
-    /// Modal accelerations without axle loads.
+    travel: Vec<Coordinate<L>>,
+    along: Vec<L>,
+    /// Modal accelerations without axle loads, and under the static ones.
     free: Vec<L>,
-    /// Φ⁰, axle by axle.
+    loaded: Vec<L>,
+    /// Φ⁰, contact by contact.
     shapes: Vec<L>,
-    /// Modal accelerations under unit axle loads, axle by axle.
+    /// What unit modal accelerations do to δ, contact by contact.
+    senses: Vec<L>,
+    /// Modal accelerations under unit axle loads, contact by contact.
     receptance: Vec<L>,
     compliance: Vec<L>,
     offset: Vec<L>,
     forces: Vec<L>,
 }
 
+fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
+    a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
+}
+
 impl<L: Lane> Stepper<L> {
-    /// For modes of circular frequencies `omega` [rad/s], steps of `h` [s] and Newmark's `beta`.
-    pub fn new(omega: &[f64], damping: &ModalDamping, body: Body<L>, rolling: bool, h: f64, beta: f64) -> Self {
-        let (modes, axles) = (omega.len(), body.contacts.len());
-        let zero = L::splat(0.0);
-        let at_axles = |a: &L, b: &L| L::splat(1.0) / body.mass + *a * *b / body.pitch_inertia;
-        let body_receptance = body.arms.iter().flat_map(|a| body.arms.iter().map(move |b| at_axles(a, b))).collect();
+    /// For modes of circular frequencies `omega` [rad/s] and these vehicles.
+    pub fn new(omega: &[f64], damping: &ModalDamping, vehicles: &[Moving<'_>], scheme: &Scheme) -> Self {
+        let Scheme { h, beta, gravity, lift_off } = *scheme;
+        let contacts: usize = vehicles.iter().map(|v| v.assembly.contacts.len()).sum();
+        let mut units: Vec<Unit<L>> = Vec::with_capacity(vehicles.len());
+        let (mut contact, mut rubbing, mut coordinate) = (0, contacts, 0);
+        for vehicle in vehicles {
+            let assembly = vehicle.assembly;
+            let (c, r, q) = (assembly.contacts.len(), assembly.frictions.len(), assembly.mass.nrows());
+            units.push(Unit {
+                rig: Rig::new(assembly, vehicle.propulsion == Propulsion::Rolling, None, h, beta),
+                propulsion: vehicle.propulsion,
+                direction: vehicle.direction,
+                contacts: contact..contact + c,
+                rubbing: rubbing..rubbing + r,
+                coordinates: coordinate..coordinate + q,
+                positions: assembly.contacts.iter().map(|c| L::splat(c.position)).collect(),
+                shares: assembly.contacts.iter().map(|c| L::splat(c.share)).collect(),
+                brakes: None,
+            });
+            (contact, rubbing, coordinate) = (contact + c, rubbing + r, coordinate + q);
+        }
+        let points = vehicles.iter().flat_map(|v| &v.assembly.contacts);
+        let frictions = vehicles.iter().flat_map(|v| &v.assembly.frictions);
+        let elements = Elements {
+            contacts: points.map(|point| Contact::new(point, gravity, h, !lift_off)).collect(),
+            rubbing: frictions.map(|element| Rubbing::new(element, h)).collect(),
+        };
+        let (modes, n, zero) = (omega.len(), elements.len(), L::splat(0.0));
         Stepper {
-            body_receptance,
-            newmark: Newmark {
-                h: L::splat(h),
-                half_h: L::splat(0.5 * h),
-                old: L::splat(h * h * (0.5 - beta)),
-                new: L::splat(h * h * beta),
-            },
+            newmark: Newmark::new(h, beta),
             omega2: omega.iter().map(|w| L::splat(w * w)).collect(),
             modal: ModalSolve::new(omega, damping, h, beta),
-            body,
-            rolling,
+            units,
+            elements,
             predicted: vec![Coordinate::rest(); modes],
+            travel: vec![Coordinate::rest(); vehicles.len()],
+            along: vec![zero; contacts],
             free: vec![zero; modes],
-            shapes: vec![zero; modes * axles],
-            receptance: vec![zero; modes * axles],
-            compliance: vec![zero; axles * axles],
-            offset: vec![zero; axles],
+            loaded: vec![zero; modes],
+            shapes: vec![zero; modes * contacts],
+            senses: vec![zero; modes * contacts],
+            receptance: vec![zero; modes * contacts],
+            compliance: vec![zero; n * n],
+            offset: vec![zero; n],
             forces: vec![zero; modes],
         }
     }
 
-    /// Static equilibrium on a smooth road with the axles where `geometry` has them, the bridge at rest.
+    /// Static equilibrium with the contacts where `geometry` has them, the bridge at rest, each vehicle at its speed.
     ///
-    /// An axle that stands on the bridge at the start loads it suddenly; the first accelerations say so.
-    pub fn start(&self, travel: L, speed: L, geometry: &impl Geometry<L>) -> State<L> {
+    /// An axle that stands on the bridge at the start loads it suddenly, as does one on a road that is not level there;
+    /// the first accelerations say so. To find them this stepper must have been made for steps of zero length.
+    pub fn start(&mut self, speeds: &[L], geometry: &impl Geometry<L>) -> Result<State<L>, Unsettled> {
         let zero = L::splat(0.0);
-        let modes = (0..self.omega2.len()).map(|m| {
-            let force = self.body.contacts.iter().enumerate();
-            let a = force.fold(zero, |sum, (k, c)| sum + geometry.shape(k, m) * c.static_load);
-            Coordinate { a, ..Coordinate::rest() }
-        });
-        State {
-            modes: modes.collect(),
-            heave: Coordinate::rest(),
-            pitch: Coordinate::rest(),
-            travel: Coordinate { x: travel, v: speed, a: zero },
-            increments: vec![zero; self.body.contacts.len()],
-            shortenings: vec![zero; self.body.contacts.len()],
-            friction: self.body.contacts.iter().map(|c| c.initial).collect(),
-        }
+        let contacts = self.elements.contacts.iter().map(|c| c.at_rest());
+        let last = self.units.last().map_or(0, |unit| unit.coordinates.end);
+        let mut state = State {
+            modes: vec![Coordinate::rest(); self.omega2.len()],
+            coordinates: vec![Coordinate::rest(); last],
+            travel: speeds.iter().map(|&v| Coordinate { x: zero, v, a: zero }).collect(),
+            increments: vec![zero; self.elements.len()],
+            strokes: contacts.chain(self.elements.rubbing.iter().map(|r| r.at_rest())).collect(),
+            along: vec![zero; self.elements.contacts.len()],
+        };
+        self.predict(&state);
+        self.push_along(&mut state, geometry);
+        self.react(&mut state, geometry, L::never())?;
+        Ok(state)
+    }
+
+    /// Whether the step asks for the slopes of the modes under the contacts, and for their curvatures.
+    pub fn needs_slopes(&self) -> bool {
+        let rolling = self.units.iter().any(|unit| unit.propulsion == Propulsion::Rolling);
+        rolling || self.elements.contacts.iter().any(|contact| !contact.weights.plain)
+    }
+
+    /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, and it rocks about them.
+    pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
+        self.units[vehicle].rig = standing;
+        self.units[vehicle].propulsion = Propulsion::Prescribed;
+    }
+
+    /// Puts a vehicle's brakes on, or says how far they are.
+    pub fn brake(&mut self, vehicle: usize, brakes: Brakes<L>) {
+        self.units[vehicle].brakes = Some(brakes);
     }
 
     /// Advances the state by one step.
     pub fn advance(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
-        let heave = self.newmark.predict(state.heave);
-        let pitch = self.newmark.predict(state.pitch);
-        let travel = self.newmark.predict(state.travel);
+        self.predict(state);
+        geometry.advance();
+        let rolling = self.units.iter().any(|unit| unit.propulsion == Propulsion::Rolling);
+        if !rolling {
+            self.push_along(state, geometry);
+            self.react(state, geometry, L::never())?;
+            self.settle(state);
+            return Ok(());
+        }
+        for ((unit, travel), predicted) in self.units.iter().zip(&state.travel).zip(&mut self.travel) {
+            *predicted = self.newmark.predict(*travel);
+            if unit.propulsion == Propulsion::Rolling {
+                place(unit, *predicted, unit.rig.predicted(), geometry, true);
+            }
+        }
+        self.push_along(state, geometry);
+        let mut settled = L::never();
+        for _ in 0..PASSES {
+            self.react(state, geometry, settled)?;
+            let mut moving = L::never();
+            for (u, unit) in self.units.iter().enumerate() {
+                if unit.propulsion != Propulsion::Rolling {
+                    continue;
+                }
+                let (mut force, mut change) = (L::splat(0.0), L::splat(0.0));
+                for (own, contact) in unit.contacts.clone().enumerate() {
+                    let next = along(unit, own, contact, &self.elements, state, geometry);
+                    change = change + (next - state.along[contact]).magnitude();
+                    force = force + next;
+                    self.along[contact] = next;
+                }
+                state.travel[u] = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
+                let coordinates = &state.coordinates[unit.coordinates.clone()];
+                moving = moving | place(unit, state.travel[u], coordinates, geometry, false);
+                moving = moving | !change.less(L::splat(SURGE_SETTLED) * unit.rig.total_mass);
+            }
+            // A settled lane is left as it is, so that further passes repeat it bit for bit.
+            settled = !moving;
+            if L::all(settled) {
+                self.settle(state);
+                return Ok(());
+            }
+            for unit in self.units.iter_mut().filter(|unit| unit.propulsion == Propulsion::Rolling) {
+                for contact in unit.contacts.clone() {
+                    state.along[contact] = L::select(moving, self.along[contact], state.along[contact]);
+                }
+                unit.rig.surge(&state.along[unit.contacts.clone()]);
+            }
+        }
+        Err(Unsettled::AxlePositions)
+    }
+
+    /// Everything at the end of the step if accelerations there were zero, and modal accelerations without loads.
+    fn predict(&mut self, state: &State<L>) {
+        for unit in &mut self.units {
+            unit.rig.predict(&self.newmark, &state.coordinates[unit.coordinates.clone()]);
+        }
         for (predicted, mode) in self.predicted.iter_mut().zip(&state.modes) {
             *predicted = self.newmark.predict(*mode);
         }
@@ -287,116 +337,177 @@ impl<L: Lane> Stepper<L> {
             self.forces[m] = -resisting;
         }
         self.modal.apply(&self.forces, &mut self.free);
-        geometry.predict(travel.x, pitch.x);
-
-        let mut surge = state.travel.a;
-        let mut settled = L::never();
-        for _ in 0..PASSES {
-            // The ground drags at road level: the body pitches by −h m ẍ about its centre of mass.
-            let drag = self.body.cg_height * self.body.mass * surge / self.body.pitch_inertia;
-            let drag = if self.rolling { drag } else { L::splat(0.0) };
-            self.couple(geometry, heave.x, pitch.x - self.newmark.new * drag);
-            let solved = contact::solve(
-                &self.body.contacts,
-                &self.offset,
-                &self.compliance,
-                &state.shortenings,
-                &mut state.increments,
-                settled,
-            );
-            if !solved {
-                return Err(Unsettled::ContactForces);
-            }
-            self.move_bridge(state);
-            let (mut force, mut couple) = (L::splat(0.0), L::splat(0.0));
-            for (p, arm) in state.increments.iter().zip(&self.body.arms) {
-                force = force - *p;
-                couple = couple - *p * *arm;
-            }
-            state.heave = self.newmark.correct(heave, force / self.body.mass);
-            state.pitch = self.newmark.correct(pitch, couple / self.body.pitch_inertia - drag);
-            if !self.rolling {
-                state.travel = travel;
-                self.settle(state);
-                return Ok(());
-            }
-            let next = self.surge(state, geometry);
-            state.travel = self.newmark.correct(travel, next);
-            let moving = geometry.follow(state.travel.x, state.pitch.x);
-            let unsteady = L::splat(SURGE_SETTLED).less((next - surge).magnitude());
-            if !L::any(moving | unsteady) {
-                self.settle(state);
-                return Ok(());
-            }
-            // A settled lane is left as it is, so that further passes repeat it bit for bit.
-            settled = !(moving | unsteady);
-            surge = L::select(unsteady, next, surge);
-        }
-        Err(Unsettled::AxlePositions)
     }
 
-    /// Commits the suspensions to the end of the step.
+    /// Forces along the road to begin with: those that prescribed motion takes, or those of the last step.
+    fn push_along(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>) {
+        for unit in &mut self.units {
+            if unit.propulsion == Propulsion::Prescribed {
+                for (contact, share) in unit.contacts.clone().zip(&unit.shares) {
+                    state.along[contact] = L::splat(unit.direction) * geometry.motion(contact).a * *share;
+                }
+            }
+            unit.rig.surge(&state.along[unit.contacts.clone()]);
+        }
+    }
+
+    /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
+    fn react(
+        &mut self,
+        state: &mut State<L>,
+        geometry: &impl Geometry<L>,
+        frozen: L::Mask,
+    ) -> Result<(), Unsettled> {
+        self.couple(geometry);
+        if !self.elements.solve(&self.offset, &self.compliance, &state.strokes, &mut state.increments, frozen) {
+            return Err(Unsettled::ContactForces);
+        }
+        self.move_bridge(state);
+        for unit in &self.units {
+            let (contacts, rubbing) = (unit.contacts.clone(), unit.rubbing.clone());
+            let forces = [&state.increments[contacts], &state.increments[rubbing]];
+            unit.rig.correct(&self.newmark, forces[0], forces[1], &mut state.coordinates[unit.coordinates.clone()]);
+        }
+        Ok(())
+    }
+
+    /// Commits the suspensions to the end of the step; what moves as prescribed goes on.
     fn settle(&self, state: &mut State<L>) {
-        for (k, contact) in self.body.contacts.iter().enumerate() {
-            let (s, f) = contact.settle(state.increments[k], state.shortenings[k]);
-            state.shortenings[k] = s;
-            state.friction[k] = f;
-        }
+        self.elements.settle(&self.offset, &self.compliance, &state.increments, &mut state.strokes);
     }
 
-    /// Shortenings without load increments `offset`, and what the increments take off them, `compliance`.
-    fn couple(&mut self, geometry: &impl Geometry<L>, heave: L, pitch: L) {
-        let (modes, axles) = (self.omega2.len(), self.body.contacts.len());
-        let beta_h2 = self.newmark.new;
+    /// What the elements follow without force increments, `offset`, and what the increments take off it, `compliance`.
+    fn couple(&mut self, geometry: &impl Geometry<L>) {
+        let (modes, n) = (self.omega2.len(), self.elements.len());
+        let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
         for (k, shapes) in self.shapes.chunks_exact_mut(modes).enumerate() {
             for (m, shape) in shapes.iter_mut().enumerate() {
                 *shape = geometry.shape(k, m);
             }
         }
+        self.loaded.copy_from_slice(&self.free);
         let receptances = self.receptance.chunks_exact_mut(modes);
-        for (shapes, receptance) in self.shapes.chunks_exact(modes).zip(receptances) {
+        for ((shapes, receptance), contact) in self.shapes.chunks_exact(modes).zip(receptances).zip(&self.elements.contacts)
+        {
             self.modal.apply(shapes, receptance);
+            for (loaded, r) in self.loaded.iter_mut().zip(receptance.iter()) {
+                *loaded = *loaded + *r * contact.static_load;
+            }
         }
-        let rows = self.compliance.chunks_exact_mut(axles).zip(self.body_receptance.chunks_exact(axles));
-        let axles = self.shapes.chunks_exact(modes).zip(&self.body.arms).zip(&mut self.offset).zip(rows);
-        for (((shapes, arm), offset), (compliance, body)) in axles {
-            let mut d = heave + *arm * pitch;
-            for ((shape, predicted), free) in shapes.iter().zip(&self.predicted).zip(&self.free) {
-                d = d - *shape * (predicted.x + beta_h2 * *free);
+        // The bridge below the contacts.
+        for (k, contact) in self.elements.contacts.iter().enumerate() {
+            let weights = contact.weights;
+            let shapes = &self.shapes[k * modes..(k + 1) * modes];
+            let senses = &mut self.senses[k * modes..(k + 1) * modes];
+            let road = geometry.surface(k);
+            let mut offset = weights.value * road.elevation;
+            if weights.plain {
+                for ((sense, shape), predicted) in senses.iter_mut().zip(shapes).zip(&self.predicted) {
+                    *sense = beta_h2 * *shape;
+                    offset = offset - *shape * predicted.x;
+                }
+            } else {
+                let Coordinate { v, a, .. } = geometry.motion(k);
+                let v2 = v * v;
+                offset = offset + weights.rate * v * road.slope
+                    + weights.acceleration * (v2 * road.curvature + a * road.slope);
+                for (m, ((sense, &shape), q)) in senses.iter_mut().zip(shapes).zip(&self.predicted).enumerate() {
+                    let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
+                    let convected = v2 * curvature + a * slope;
+                    *sense = weights.value * (beta_h2 * shape)
+                        + weights.rate * (half_h * shape + beta_h2 * v * slope)
+                        + weights.acceleration * (shape + h * v * slope + beta_h2 * convected);
+                    let value = shape * q.x;
+                    let rate = shape * q.v + v * slope * q.x;
+                    let acceleration = L::splat(2.0) * v * slope * q.v + convected * q.x;
+                    offset = offset
+                        - (weights.value * value + weights.rate * rate + weights.acceleration * acceleration);
+                }
             }
-            let others = self.receptance.chunks_exact(modes).zip(&self.body.contacts);
-            for (((receptance, contact), body), compliance) in others.zip(body).zip(compliance) {
-                let bridge = dot(shapes, receptance);
-                d = d - beta_h2 * bridge * contact.static_load;
-                *compliance = beta_h2 * (bridge + *body);
+            self.offset[k] = offset - dot(senses, &self.loaded);
+            let row = &mut self.compliance[k * n..(k + 1) * n];
+            for (receptance, compliance) in self.receptance.chunks_exact(modes).zip(row.iter_mut()) {
+                *compliance = dot(senses, receptance);
             }
-            *offset = d;
+        }
+        // The vehicles above them, and what rubs between their parts.
+        for unit in &self.units {
+            for own in 0..unit.rig.elements {
+                let k = unit.element(own);
+                let [value, rate] = unit.rig.shortening(&self.newmark, own);
+                let factor = match self.elements.contacts.get(k) {
+                    Some(contact) => {
+                        let weights = contact.weights;
+                        self.offset[k] = self.offset[k] + weights.value * value + weights.rate * rate;
+                        weights.value * beta_h2 + weights.rate * half_h
+                    }
+                    None => {
+                        self.offset[k] = value;
+                        beta_h2
+                    }
+                };
+                for (other, coupling) in unit.rig.coupling(own).iter().enumerate() {
+                    let at = k * n + unit.element(other);
+                    let of_bridge = other < unit.contacts.len() && own < unit.contacts.len();
+                    let before = if of_bridge { self.compliance[at] } else { L::splat(0.0) };
+                    self.compliance[at] = before + factor * *coupling;
+                }
+            }
         }
     }
 
     fn move_bridge(&mut self, state: &mut State<L>) {
         let modes = self.omega2.len();
-        self.forces.copy_from_slice(&self.free);
-        let loads = self.body.contacts.iter().zip(&state.increments);
-        for (receptance, (contact, increment)) in self.receptance.chunks_exact(modes).zip(loads) {
-            let load = contact.static_load + *increment;
+        self.forces.copy_from_slice(&self.loaded);
+        for (receptance, increment) in self.receptance.chunks_exact(modes).zip(&state.increments) {
             for (a, r) in self.forces.iter_mut().zip(receptance) {
-                *a = *a + *r * load;
+                *a = *a + *r * *increment;
             }
         }
         for ((mode, predicted), a) in state.modes.iter_mut().zip(&self.predicted).zip(&self.forces) {
             *mode = self.newmark.correct(*predicted, *a);
         }
     }
+}
 
-    /// Acceleration along the road under constant traction: m ẍ = Σ P w' at the axles.
-    fn surge(&self, state: &State<L>, geometry: &impl Geometry<L>) -> L {
-        let mut force = L::splat(0.0);
-        for (k, contact) in self.body.contacts.iter().enumerate() {
-            let modes = state.modes.iter().enumerate();
-            let slope = modes.fold(L::splat(0.0), |sum, (m, mode)| sum + geometry.slope(k, m) * mode.x);
-            force = force + (contact.static_load + state.increments[k]) * slope;
+/// Puts the contacts of a freely rolling vehicle where it has them: lanes in which one had still to move.
+fn place<L: Lane>(
+    unit: &Unit<L>,
+    travel: Coordinate<L>,
+    coordinates: &[Coordinate<L>],
+    geometry: &mut impl Geometry<L>,
+    new_step: bool,
+) -> L::Mask {
+    let mut moving = L::never();
+    for (own, contact) in unit.contacts.clone().enumerate() {
+        let along = unit.rig.along(own, coordinates);
+        let x = travel.x + unit.positions[own] + along.x;
+        let motion = Coordinate { x, v: travel.v + along.v, a: travel.a + along.a };
+        moving = moving | geometry.follow(contact, motion, new_step);
+    }
+    moving
+}
+
+/// Force along the road at a contact of a freely rolling vehicle, in the direction of travel: what pushes it down the
+/// slope of bridge and road, less its brakes.
+fn along<L: Lane>(
+    unit: &Unit<L>,
+    own: usize,
+    contact: usize,
+    elements: &Elements<L>,
+    state: &State<L>,
+    geometry: &impl Geometry<L>,
+) -> L {
+    let modes = state.modes.iter().enumerate();
+    let slope = modes.fold(L::splat(0.0), |sum, (m, mode)| sum + geometry.slope(contact, m) * mode.x);
+    let slope = slope - geometry.surface(contact).slope;
+    let load = elements.contacts[contact].static_load + state.increments[contact];
+    let downhill = L::splat(unit.direction) * load * slope;
+    match unit.brakes {
+        None => downhill,
+        Some(brakes) => {
+            let asked = brakes.level * brakes.demand * unit.shares[own];
+            downhill - asked.smaller(brakes.adhesion * load)
         }
-        force / self.body.mass
     }
 }

@@ -1,0 +1,123 @@
+//! Friction beside a spring: how the force follows the stroke, and where it meets what the rest of the step asks for.
+
+use crate::assembly::{BuildUp, Friction};
+use crate::lane::Lane;
+
+/// Most iterations for a leaf spring; four to eight are usual.
+const ITERATIONS: usize = 60;
+
+/// Change of stroke, relative to the distance in which a leaf spring's force builds up, at which it counts as found.
+const FOUND: f64 = 1e-14;
+
+/// A suspension at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stroke<L> {
+    /// Shortening since the static state [m].
+    pub shortening: L,
+    /// Its rate [m/s], known where a damper needs it.
+    pub rate: L,
+    /// Friction force [N].
+    pub friction: L,
+}
+
+impl<L: Lane> Stroke<L> {
+    /// At rest, with the friction of the static state [N].
+    pub fn at_rest(friction: L) -> Self {
+        Stroke { shortening: L::splat(0.0), rate: L::splat(0.0), friction }
+    }
+}
+
+/// The law f(s) of a friction element from one instant to the next.
+#[derive(Debug, Clone, Copy)]
+pub enum Law<L> {
+    /// Coulomb: any force up to the limit while it sticks.
+    Rigid {
+        /// F [N].
+        limit: L,
+    },
+    /// Coulomb behind an elastic stick (Jenkins element).
+    Elastic {
+        /// F [N].
+        limit: L,
+        /// Compliance of the stick [m/N].
+        give: L,
+    },
+    /// Leaf spring: the total force tends exponentially to the envelope k s ± F, whichever way it moves.
+    ///
+    /// This is dT/ds = (T_env − T)/β along a straight envelope, solved exactly, so that the way is the same however
+    /// many steps it takes; for short steps it is the recursion of P. S. Fancher, R. D. Ervin, C. C. MacAdam and
+    /// C. B. Winkler, SAE paper 800905 (1980).
+    Leaf {
+        /// F [N].
+        limit: L,
+        /// β [m].
+        decay: L,
+        /// kβ, by which the force lags behind the envelope [N].
+        lag: L,
+    },
+}
+
+impl<L: Lane> Law<L> {
+    /// Of friction beside a spring of this stiffness [N/m].
+    pub fn new(friction: &Friction, spring: f64) -> Self {
+        let limit = L::splat(friction.limit);
+        match friction.build_up {
+            BuildUp::Rigid => Law::Rigid { limit },
+            BuildUp::Elastic(stick) => Law::Elastic { limit, give: L::splat(1.0 / stick) },
+            BuildUp::Leaf(decay) => Law::Leaf { limit, decay: L::splat(decay), lag: L::splat(spring * decay) },
+        }
+    }
+
+    /// Shortening and friction where the law, coming from `before`, meets the falling line f = a − b s.
+    ///
+    /// The law and its spring rise with s, and b is at least the spring's stiffness, so there is one such point.
+    #[inline]
+    pub fn meet(&self, a: L, b: L, before: &Stroke<L>) -> (L, L) {
+        let s = before.shortening;
+        match *self {
+            Law::Rigid { limit } => {
+                let trial = a - b * s;
+                let slips = limit.less(trial.magnitude());
+                if L::any(slips) {
+                    let friction = trial.smaller(limit).larger(-limit);
+                    (s + (trial - friction) / b, friction)
+                } else {
+                    (s, trial)
+                }
+            }
+            Law::Elastic { limit, give } => {
+                let softening = b * give;
+                let trial = (a - b * s + softening * before.friction) / (L::splat(1.0) + softening);
+                let friction = trial.smaller(limit).larger(-limit);
+                (s + (a - b * s - friction) / b, friction)
+            }
+            Law::Leaf { limit, decay, lag } => leaf(a, b, before, limit, decay, lag),
+        }
+    }
+}
+
+fn leaf<L: Lane>(a: L, b: L, before: &Stroke<L>, limit: L, decay: L, lag: L) -> (L, L) {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    // Everything in the direction in which it moves: x ≥ 0 from here, and the force there on tends to `far`.
+    let excess = a - b * before.shortening - before.friction;
+    let sense = L::select(excess.less(zero), -one, one);
+    let excess = sense * excess;
+    let far = limit - lag;
+    let apart = sense * before.friction - far;
+    // Newton on b x + apart (e^(−x/β) − 1) = excess: convex or concave throughout, so it converges from zero.
+    let mut x = zero;
+    let mut done = L::never();
+    for _ in 0..ITERATIONS {
+        let fading = (-x / decay).exp();
+        let residual = b * x + apart * (fading - one) - excess;
+        let next = x - residual / (b - apart * fading / decay);
+        let change = (next - x).magnitude();
+        x = L::select(done, x, next);
+        done = done | change.less(L::splat(FOUND) * decay);
+        if L::all(done) {
+            break;
+        }
+    }
+    let fading = (-x / decay).exp();
+    (before.shortening + sense * x, sense * (far + apart * fading))
+}

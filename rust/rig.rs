@@ -1,0 +1,163 @@
+//! A vehicle in a step: what its coordinates do under contact forces, friction and forces along the road.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::assembly::Assembly;
+use crate::lane::Lane;
+use crate::newmark::{Coordinate, Newmark};
+
+/// A vehicle's matrices for steps of one length. Elements are its contacts, then its friction elements.
+#[derive(Debug, Clone)]
+pub struct Rig<L> {
+    /// Number of coordinates.
+    pub size: usize,
+    /// Number of contacts.
+    pub contacts: usize,
+    /// Number of elements.
+    pub elements: usize,
+    /// Mass of the whole vehicle [kg].
+    pub total_mass: L,
+    /// C and K by rows; empty where both are zero, as of a body on massless axles.
+    linear: Option<[Vec<L>; 2]>,
+    /// (M + ½hC + βh²K)⁻¹ by rows.
+    inverse: Vec<L>,
+    /// Shortening of each element per unit of each coordinate, by rows.
+    rows: Vec<L>,
+    /// Accelerations under unit element forces, inverse·rowᵀ, element by element.
+    receptance: Vec<L>,
+    /// Accelerations of the elements under unit element forces, row_i·inverse·row_jᵀ, by rows.
+    coupling: Vec<L>,
+    /// How the contacts move along the road with the coordinates, by rows; none where that makes no difference.
+    surge_rows: Option<Vec<L>>,
+    /// Accelerations under unit forces along the road at the contacts.
+    surge_receptance: Vec<L>,
+    predicted: Vec<Coordinate<L>>,
+    /// Accelerations without element forces.
+    free: Vec<L>,
+    /// −(C v + K x) of the prediction.
+    resisting: Vec<L>,
+}
+
+impl<L: Lane> Rig<L> {
+    /// The same vehicle in every lane. One that `rolls` freely has inertia against the pitching of its parts along the
+    /// road; `extra_mass` is added to M besides, if given.
+    pub fn new(assembly: &Assembly, rolls: bool, extra_mass: Option<&DMatrix<f64>>, h: f64, beta: f64) -> Self {
+        let size = assembly.mass.nrows();
+        let mut mass = assembly.mass.clone();
+        if rolls {
+            mass += &assembly.surge_mass;
+        }
+        if let Some(extra) = extra_mass {
+            mass += extra;
+        }
+        let effective = &mass + &assembly.damping * (0.5 * h) + &assembly.stiffness * (beta * h * h);
+        // An assembly's mass matrix is positive definite, and the rest does not take from it.
+        let inverse = effective.try_inverse().unwrap_or_else(|| DMatrix::from_element(size, size, f64::NAN));
+        let contact_rows = assembly.contacts.iter().map(|c| &c.row);
+        let rows: Vec<&DVector<f64>> = contact_rows.chain(assembly.frictions.iter().map(|f| &f.row)).collect();
+        let receptance: Vec<DVector<f64>> = rows.iter().map(|row| &inverse * *row).collect();
+        let couplings = rows.iter().flat_map(|row| receptance.iter().map(|r| row.dot(r)));
+        let by_rows = |m: &DMatrix<f64>| m.transpose().iter().copied().map(L::splat).collect::<Vec<L>>();
+        let flat = |all: &[DVector<f64>]| all.iter().flat_map(|v| v.iter().copied().map(L::splat)).collect::<Vec<L>>();
+        let surge_rows: Vec<DVector<f64>> = assembly.contacts.iter().map(|c| c.surge_row.clone()).collect();
+        let surge_receptance: Vec<DVector<f64>> = surge_rows.iter().map(|row| &inverse * row).collect();
+        let zero = L::splat(0.0);
+        let linear = assembly.damping.iter().chain(assembly.stiffness.iter()).any(|&v| v != 0.0);
+        Rig {
+            size,
+            contacts: assembly.contacts.len(),
+            elements: rows.len(),
+            total_mass: L::splat(assembly.total_mass),
+            linear: linear.then(|| [by_rows(&assembly.damping), by_rows(&assembly.stiffness)]),
+            inverse: by_rows(&inverse),
+            coupling: couplings.map(L::splat).collect(),
+            receptance: flat(&receptance),
+            rows: rows.iter().flat_map(|row| row.iter().copied().map(L::splat)).collect(),
+            surge_rows: surge_rows.iter().any(|row| row.iter().any(|&v| v != 0.0)).then(|| flat(&surge_rows)),
+            surge_receptance: flat(&surge_receptance),
+            predicted: vec![Coordinate::rest(); size],
+            free: vec![zero; size],
+            resisting: vec![zero; size],
+        }
+    }
+
+    /// Begins a step.
+    pub fn predict(&mut self, newmark: &Newmark<L>, state: &[Coordinate<L>]) {
+        for (predicted, c) in self.predicted.iter_mut().zip(state) {
+            *predicted = newmark.predict(*c);
+        }
+        if let Some([damping, stiffness]) = &self.linear {
+            let rows = damping.chunks_exact(self.size).zip(stiffness.chunks_exact(self.size));
+            for (resisting, (c, k)) in self.resisting.iter_mut().zip(rows) {
+                let mut sum = L::splat(0.0);
+                for ((c, k), q) in c.iter().zip(k).zip(&self.predicted) {
+                    sum = sum - (*c * q.v + *k * q.x);
+                }
+                *resisting = sum;
+            }
+        }
+    }
+
+    /// Works out the accelerations without element forces, under forces along the road at the contacts [N].
+    pub fn surge(&mut self, along: &[L]) {
+        let zero = L::splat(0.0);
+        match &self.linear {
+            Some(_) => {
+                for (free, row) in self.free.iter_mut().zip(self.inverse.chunks_exact(self.size)) {
+                    *free = row.iter().zip(&self.resisting).fold(zero, |sum, (e, f)| sum + *e * *f);
+                }
+            }
+            None => self.free.fill(zero),
+        }
+        if self.surge_rows.is_some() {
+            for (receptance, force) in self.surge_receptance.chunks_exact(self.size).zip(along) {
+                for (free, r) in self.free.iter_mut().zip(receptance) {
+                    *free = *free + *r * *force;
+                }
+            }
+        }
+    }
+
+    /// Shortening of an element without element forces, and its rate.
+    pub fn shortening(&self, newmark: &Newmark<L>, element: usize) -> [L; 2] {
+        let row = &self.rows[element * self.size..(element + 1) * self.size];
+        let mut sums = [L::splat(0.0); 2];
+        for ((b, q), a) in row.iter().zip(&self.predicted).zip(&self.free) {
+            let end = newmark.correct(*q, *a);
+            sums[0] = sums[0] + *b * end.x;
+            sums[1] = sums[1] + *b * end.v;
+        }
+        sums
+    }
+
+    /// Accelerations of element i under unit forces of all elements.
+    pub fn coupling(&self, i: usize) -> &[L] {
+        &self.coupling[i * self.elements..(i + 1) * self.elements]
+    }
+
+    /// Ends a step under the element forces: contacts', then friction's.
+    pub fn correct(&self, newmark: &Newmark<L>, contacts: &[L], frictions: &[L], state: &mut [Coordinate<L>]) {
+        for (i, (state, predicted)) in state.iter_mut().zip(&self.predicted).enumerate() {
+            let receptances = self.receptance.chunks_exact(self.size);
+            let forces = contacts.iter().chain(frictions);
+            let a = receptances.zip(forces).fold(self.free[i], |a, (receptance, force)| a - receptance[i] * *force);
+            *state = newmark.correct(*predicted, a);
+        }
+    }
+
+    /// How far a contact is along the road beyond its place in the static state [m], and the two derivatives of that.
+    pub fn along(&self, contact: usize, state: &[Coordinate<L>]) -> Coordinate<L> {
+        let mut sum = Coordinate::rest();
+        if let Some(rows) = &self.surge_rows {
+            for (c, q) in rows[contact * self.size..(contact + 1) * self.size].iter().zip(state) {
+                sum = Coordinate { x: sum.x + *c * q.x, v: sum.v + *c * q.v, a: sum.a + *c * q.a };
+            }
+        }
+        sum
+    }
+
+    /// The coordinates without accelerations at the end of the step.
+    pub fn predicted(&self) -> &[Coordinate<L>] {
+        &self.predicted
+    }
+}
