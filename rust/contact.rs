@@ -38,8 +38,8 @@ impl<L: Lane> Contact<L> {
             tyre: L::splat(axle.tyre_stiffness),
             suspension: L::splat(axle.suspension_stiffness),
             series: L::splat(axle.sliding_stiffness()),
-            limit: L::splat(axle.friction_limit),
-            initial: L::splat(axle.initial_friction),
+            limit: L::splat(axle.friction.limit),
+            initial: L::splat(axle.friction.initial),
         }
     }
 
