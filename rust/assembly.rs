@@ -3,7 +3,18 @@
 //! Coordinates q are counted from the static state, displacements down and rotations nose down. Without contact forces
 //! and friction M q̈ + C q̇ + K q = 0; every contact and friction force enters through its row.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+
+use crate::error::Error;
+use crate::vehicle::{Axle, Body, Coupling, Suspension};
+
+/// Stiffness of a stick, as a multiple of the spring it is measured by, where none is given.
+///
+/// High enough that the deformation before sliding is small beside that of the tyre, low enough for a time step.
+pub const STICK: f64 = 20.0;
+
+/// Ratio of the lowest to the highest squared frequency below which a motion counts as free.
+const FREE: f64 = 1e-12;
 
 /// A vehicle as the time step sees it.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +31,15 @@ pub struct Assembly {
     pub contacts: Vec<ContactPoint>,
     /// Friction between bodies and axles, apart from that of massless axles.
     pub frictions: Vec<FrictionElement>,
-    /// Total mass [kg].
+    /// Total mass [kg]; none of a train of forces.
     pub total_mass: f64,
+    /// To be added to `mass` when the vehicle rolls freely: its parts move along the road relative to the centre of
+    /// mass as bodies pitch. Zero for one rigid body on massless axles.
+    pub surge_mass: DMatrix<f64>,
+    /// Heave and pitch of every body, as rows that give them from q.
+    pub bodies: Vec<[DVector<f64>; 2]>,
+    /// Displacement of the unsprung mass above each contact, where there is one, as a row.
+    pub hops: Vec<Option<DVector<f64>>>,
 }
 
 /// A wheel line on the road.
@@ -34,7 +52,8 @@ pub struct ContactPoint {
     /// How the contact moves along the road as the vehicle pitches: x = X + position + surge_row·q, X the centre of mass
     /// of the whole vehicle. Of one rigid body −h in pitch.
     pub surge_row: DVector<f64>,
-    /// Static load for a gravity of one [kg].
+    /// Static load for a gravity of one [kg]; of a constant force, which gravity leaves as it is, the force [N]. See
+    /// [`Assembly::static_loads`].
     pub share: f64,
     /// How the force follows from the shortening.
     pub law: ContactLaw,
@@ -91,6 +110,34 @@ pub enum BuildUp {
     Leaf(f64),
 }
 
+impl Friction {
+    /// None.
+    pub const NONE: Friction = Friction { limit: 0.0, initial: 0.0, build_up: BuildUp::Rigid };
+
+    /// Coulomb's law with this limit [N], none in the static state.
+    pub fn coulomb(limit: f64) -> Self {
+        Friction { limit, ..Friction::NONE }
+    }
+
+    /// The same beside inertia, where nothing builds up at once: rigid becomes elastic with `STICK` times a stiffness.
+    fn softened(self, stiffness: f64) -> Self {
+        match self.build_up {
+            BuildUp::Rigid => Friction { build_up: BuildUp::Elastic(STICK * stiffness), ..self },
+            _ => self,
+        }
+    }
+
+    /// Largest stiffness before it slides [N/m]; a leaf spring's on the way from one limit to the other.
+    pub fn stick_stiffness(&self) -> f64 {
+        match self.build_up {
+            _ if self.limit == 0.0 => 0.0,
+            BuildUp::Rigid => f64::INFINITY,
+            BuildUp::Elastic(stiffness) => stiffness,
+            BuildUp::Leaf(stroke) => 2.0 * self.limit / stroke,
+        }
+    }
+}
+
 /// A friction element between two parts of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionElement {
@@ -100,4 +147,338 @@ pub struct FrictionElement {
     pub friction: Friction,
     /// Stiffness of the spring beside it [N/m], which is part of K too; a leaf spring's envelope has this slope.
     pub stiffness: f64,
+}
+
+/// Where a body is: its heave and pitch, and how its centre of mass moves along the road, as rows over q.
+struct Place {
+    heave: DVector<f64>,
+    pitch: DVector<f64>,
+    /// Relative to the centre of mass of the first body.
+    surge: DVector<f64>,
+    /// Ahead of the centre of mass of the first body [m].
+    position: f64,
+    /// Of the centre of mass above the road [m].
+    height: f64,
+}
+
+impl Place {
+    /// Downward displacement of a point at this distance ahead of the centre of mass.
+    fn at(&self, ahead: f64) -> DVector<f64> {
+        &self.heave + &self.pitch * ahead
+    }
+
+    /// Displacement along the road of what is at this height: nose down, points below the centre of mass go back.
+    fn along(&self, height: f64) -> DVector<f64> {
+        &self.surge - &self.pitch * (self.height - height)
+    }
+}
+
+/// A mass, its displacement along the road relative to the first body, and how far ahead of that it is.
+type Part = (f64, DVector<f64>, f64);
+
+/// A sum of squares, k rowᵀ row, as it goes into a matrix.
+fn add(matrix: &mut DMatrix<f64>, factor: f64, row: &DVector<f64>) {
+    matrix.ger(factor, row, row, 1.0);
+}
+
+impl Assembly {
+    /// Of bodies whose values have been checked one by one; refuses what cannot stand.
+    ///
+    /// Each hinge takes one coordinate: the heave of the body that has it, z = z' + a'θ' − aθ.
+    pub(crate) fn of_bodies(bodies: &[Body]) -> Result<Self, Error> {
+        let order = front_first(bodies);
+        let (coordinates, heaves, pitches, hops) = coordinates(bodies, &order);
+        let n = coordinates.len();
+        let unit = |i: Option<usize>| DVector::from_fn(n, |j, _| f64::from(u8::from(i == Some(j))));
+        let mut assembly = Assembly {
+            mass: DMatrix::zeros(n, n),
+            damping: DMatrix::zeros(n, n),
+            stiffness: DMatrix::zeros(n, n),
+            surge_mass: DMatrix::zeros(n, n),
+            coordinates,
+            contacts: Vec::new(),
+            frictions: Vec::new(),
+            total_mass: 0.0,
+            bodies: Vec::new(),
+            hops: Vec::new(),
+        };
+        let mut weight = DVector::zeros(n);
+        let mut parts: Vec<Part> = Vec::new();
+        let mut places: Vec<Place> = Vec::new();
+        for (b, body) in bodies.iter().enumerate() {
+            let place = place(body, unit(heaves[b]), unit(pitches[b]), &places);
+            add(&mut assembly.mass, body.mass, &place.heave);
+            add(&mut assembly.mass, body.pitch_inertia, &place.pitch);
+            weight.axpy(body.mass, &place.heave, 1.0);
+            parts.push((body.mass, place.surge.clone(), place.position));
+            for coupling in &body.couplings {
+                if let Coupling::Spring { to, at, own, stiffness, damping, friction } = *coupling {
+                    let row = places[to].at(at) - place.at(own);
+                    let row = if places[to].height < place.height { -row } else { row };
+                    assembly.connect(row, stiffness, damping, friction.softened(stiffness));
+                }
+            }
+            assembly.bodies.push([place.heave.clone(), place.pitch.clone()]);
+            places.push(place);
+        }
+        for (k, &(b, i)) in order.iter().enumerate() {
+            let (place, axle) = (&places[b], &bodies[b].axles[i]);
+            let (above, ground, position) = (place.at(axle.position), place.along(0.0), place.position + axle.position);
+            let hop = hops[k].map(|at| unit(Some(at)));
+            if let Some(hop) = &hop {
+                add(&mut assembly.mass, axle.mass, hop);
+                weight.axpy(axle.mass, hop, 1.0);
+                parts.push((axle.mass, ground.clone(), position));
+                let friction = axle.friction.softened(axle.tyre_stiffness);
+                assembly.connect(&above - hop, axle.suspension_stiffness, axle.suspension_damping, friction);
+            }
+            let row = hop.clone().unwrap_or(above);
+            assembly.contacts.push(ContactPoint { row, position, surge_row: ground, share: 0.0, law: law(axle) });
+            assembly.hops.push(hop);
+        }
+        assembly.centre(&parts);
+        assembly.stand(bodies, &order, &weight)?;
+        Ok(assembly)
+    }
+
+    /// Of contacts without a vehicle above, at positions ahead of any point: forces [N], or masses [kg].
+    pub(crate) fn of_contacts(laws: Vec<(f64, ContactLaw)>, positions: &[f64]) -> Self {
+        let (none, empty) = (DVector::zeros(0), DMatrix::zeros(0, 0));
+        let total: f64 = laws.iter().map(|(share, _)| share).sum();
+        let centre = laws.iter().zip(positions).map(|((share, _), x)| share * x).sum::<f64>() / total;
+        let masses = laws.iter().map(|(_, law)| if let ContactLaw::Mass(mass) = law { *mass } else { 0.0 });
+        Assembly {
+            coordinates: Vec::new(),
+            mass: empty.clone(),
+            damping: empty.clone(),
+            stiffness: empty.clone(),
+            surge_mass: empty,
+            frictions: Vec::new(),
+            total_mass: masses.sum(),
+            bodies: Vec::new(),
+            hops: vec![None; laws.len()],
+            contacts: laws
+                .into_iter()
+                .zip(positions)
+                .map(|((share, law), x)| ContactPoint {
+                    row: none.clone(),
+                    position: x - centre,
+                    surge_row: none.clone(),
+                    share,
+                    law,
+                })
+                .collect(),
+        }
+    }
+
+    /// Static loads of the contacts [N] under gravity [m/s²], front first.
+    pub fn static_loads(&self, gravity: f64) -> Vec<f64> {
+        let load = |c: &ContactPoint| if c.law == ContactLaw::Force { c.share } else { c.share * gravity };
+        self.contacts.iter().map(load).collect()
+    }
+
+    /// Stiffness on rigid ground, tyres and all, with every suspension in the given state.
+    pub fn grounded_stiffness(&self, suspension: Suspension) -> DMatrix<f64> {
+        let mut stiffness = self.stiffness.clone();
+        for contact in &self.contacts {
+            add(&mut stiffness, contact.law.stiffness(suspension), &contact.row);
+        }
+        if suspension == Suspension::Locked {
+            for element in &self.frictions {
+                add(&mut stiffness, element.friction.stick_stiffness(), &element.row);
+            }
+        }
+        stiffness
+    }
+
+    /// Natural frequencies on rigid ground [Hz], ascending, with their shapes in the columns.
+    pub fn vibrations(&self, suspension: Suspension) -> (Vec<f64>, DMatrix<f64>) {
+        let n = self.coordinates.len();
+        let none = (vec![f64::NAN; n], DMatrix::zeros(n, n));
+        let Some(root) = Cholesky::new(self.mass.clone()) else { return none };
+        let inverse = root.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or_else(|| DMatrix::zeros(n, n));
+        let scaled = &inverse * self.grounded_stiffness(suspension) * inverse.transpose();
+        // A bound on the iterations, because stiffnesses that overflow would keep it going.
+        let Some(eigen) = SymmetricEigen::try_new(scaled, f64::EPSILON, 1000) else { return none };
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
+        let frequencies = order.iter().map(|&i| eigen.eigenvalues[i].max(0.0).sqrt() / std::f64::consts::TAU);
+        (frequencies.collect(), inverse.transpose() * eigen.eigenvectors.select_columns(&order))
+    }
+
+    fn connect(&mut self, row: DVector<f64>, stiffness: f64, damping: f64, friction: Friction) {
+        add(&mut self.stiffness, stiffness, &row);
+        add(&mut self.damping, damping, &row);
+        if friction.limit > 0.0 {
+            self.frictions.push(FrictionElement { row, friction, stiffness });
+        }
+    }
+
+    /// Counts all that is along the road from the centre of mass of the whole vehicle.
+    fn centre(&mut self, parts: &[Part]) {
+        self.total_mass = parts.iter().map(|(mass, ..)| mass).sum();
+        let mut surge = DVector::zeros(self.coordinates.len());
+        let mut position = 0.0;
+        for (mass, row, at) in parts {
+            surge.axpy(mass / self.total_mass, row, 1.0);
+            position += mass / self.total_mass * at;
+        }
+        for (mass, row, _) in parts {
+            add(&mut self.surge_mass, *mass, &(row - &surge));
+        }
+        for contact in &mut self.contacts {
+            contact.surge_row -= &surge;
+            contact.position -= position;
+        }
+    }
+
+    /// The share of the weight that each contact carries: with suspensions as springs, without friction.
+    fn stand(&mut self, bodies: &[Body], order: &[(usize, usize)], weight: &DVector<f64>) -> Result<(), Error> {
+        self.check_held(bodies)?;
+        let sunk = self.grounded_stiffness(Suspension::Sliding).lu().solve(weight);
+        for (contact, &(b, i)) in self.contacts.iter_mut().zip(order) {
+            let sunk = sunk.as_ref().map_or(f64::NAN, |q| contact.row.dot(q));
+            contact.share = contact.law.stiffness(Suspension::Sliding) * sunk;
+            if !(contact.share.is_finite() && contact.share > 0.0) {
+                return Err(Error::input(
+                    format!("{}axles[{i}].position", prefix(bodies, b)),
+                    format!("{} m", bodies[b].axles[i].position),
+                    match bodies.len() {
+                        1 => "this axle would carry no load: the centre of mass must lie between the axles",
+                        _ => "this axle would carry no load: move axles, hinges or centres of mass",
+                    },
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a vehicle with a motion that nothing resists.
+    fn check_held(&self, bodies: &[Body]) -> Result<(), Error> {
+        let (frequencies, shapes) = self.vibrations(Suspension::Sliding);
+        let held = frequencies[0].powi(2) > FREE * frequencies[frequencies.len() - 1].powi(2);
+        if held || frequencies[0].is_nan() {
+            return Ok(()); // what is not a number is refused with the loads
+        }
+        let motion = shapes.column(0);
+        let energy = |b: usize| {
+            let [heave, pitch] = &self.bodies[b];
+            let (heave, pitch) = (heave.dot(&motion), pitch.dot(&motion));
+            [bodies[b].mass * heave * heave, bodies[b].pitch_inertia * pitch * pitch]
+        };
+        let total = |b: usize| energy(b).iter().sum::<f64>();
+        let loosest = (0..bodies.len()).max_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
+        let [heave, pitch] = energy(loosest);
+        let motion = if pitch > 1e-3 * heave { "pitch" } else { "heave" };
+        let allowed = match bodies.len() {
+            1 => "its axles leave the body free to pitch: their positions must differ".to_string(),
+            _ => format!("this leaves the body free to {motion}: give it another axle, spring or hinge"),
+        };
+        Err(Error::input(format!("{}axles", prefix(bodies, loosest)), bodies[loosest].axles.len(), allowed))
+    }
+}
+
+impl ContactLaw {
+    /// Stiffness between the road and what is above [N/m], none for what is no spring.
+    pub fn stiffness(&self, suspension: Suspension) -> f64 {
+        match (*self, suspension) {
+            (ContactLaw::Tyre { stiffness, .. }, _) => stiffness,
+            (ContactLaw::Series { tyre_stiffness, .. }, Suspension::Locked) => tyre_stiffness,
+            (ContactLaw::Series { tyre_stiffness: t, suspension_stiffness: s, .. }, Suspension::Sliding) => {
+                t * s / (t + s)
+            }
+            (ContactLaw::Mass(_) | ContactLaw::Force, _) => 0.0,
+        }
+    }
+}
+
+/// How messages begin that are about a body: with nothing where it is the only one.
+pub(crate) fn prefix(bodies: &[Body], body: usize) -> String {
+    if bodies.len() == 1 { String::new() } else { format!("bodies[{body}].") }
+}
+
+fn law(axle: &Axle) -> ContactLaw {
+    if axle.mass > 0.0 {
+        return ContactLaw::Tyre { stiffness: axle.tyre_stiffness, damping: axle.tyre_damping };
+    }
+    ContactLaw::Series {
+        tyre_stiffness: axle.tyre_stiffness,
+        tyre_damping: axle.tyre_damping,
+        suspension_stiffness: axle.suspension_stiffness,
+        suspension_damping: axle.suspension_damping,
+        friction: axle.friction,
+    }
+}
+
+/// Position of each body's centre of mass ahead of that of the first [m], by its first coupling.
+pub(crate) fn positions(bodies: &[Body]) -> Vec<f64> {
+    let mut found: Vec<f64> = Vec::new();
+    for body in bodies {
+        let (to, at, own) = body.couplings.first().map_or((None, 0.0, 0.0), |c| {
+            let (to, at, own) = c.ends();
+            (Some(to), at, own)
+        });
+        found.push(to.map_or(0.0, |to| found[to]) + at - own);
+    }
+    found
+}
+
+/// All axles of all bodies, as (body, axle), front first.
+pub(crate) fn front_first(bodies: &[Body]) -> Vec<(usize, usize)> {
+    let positions = positions(bodies);
+    let mut order: Vec<(usize, usize)> =
+        bodies.iter().enumerate().flat_map(|(b, body)| (0..body.axles.len()).map(move |i| (b, i))).collect();
+    let at = |&(b, i): &(usize, usize)| positions[b] + bodies[b].axles[i].position;
+    order.sort_by(|a, b| at(b).total_cmp(&at(a)));
+    order
+}
+
+/// Names of the coordinates, and which of them are heave and pitch of each body and hop of each contact.
+///
+/// A hinged body has no heave of its own, and one on which everything acts at its centre of mass does not pitch.
+#[allow(clippy::type_complexity)]
+fn coordinates(
+    bodies: &[Body],
+    order: &[(usize, usize)],
+) -> (Vec<String>, Vec<Option<usize>>, Vec<Option<usize>>, Vec<Option<usize>>) {
+    let mut names: Vec<String> = Vec::new();
+    let mut name = |wanted: bool, text: String| {
+        wanted.then(|| {
+            names.push(text);
+            names.len() - 1
+        })
+    };
+    let (mut heaves, mut pitches) = (Vec::new(), Vec::new());
+    for (b, body) in bodies.iter().enumerate() {
+        let hinged = body.couplings.iter().any(|c| matches!(c, Coupling::Hinge { .. }));
+        heaves.push(name(!hinged, format!("body {} heave", b + 1)));
+        let mut points = body.axles.iter().map(|axle| axle.position).chain(body.couplings.iter().map(|c| c.ends().2));
+        let mut others = bodies.iter().flat_map(|other| &other.couplings).map(Coupling::ends);
+        let pitched = points.any(|x| x != 0.0) || others.any(|(to, at, _)| to == b && at != 0.0);
+        pitches.push(name(pitched, format!("body {} pitch", b + 1)));
+    }
+    let massive = |&(b, i): &(usize, usize)| bodies[b].axles[i].mass > 0.0;
+    let hops = order.iter().enumerate().map(|(k, at)| name(massive(at), format!("axle {} hop", k + 1))).collect();
+    (names, heaves, pitches, hops)
+}
+
+/// A body's place from its own coordinates and the places of those it is coupled to.
+///
+/// Along the road it follows its hinge, or without one its first spring, taken to guide it at the height of its centre
+/// of mass.
+fn place(body: &Body, heave: DVector<f64>, pitch: DVector<f64>, others: &[Place]) -> Place {
+    let zero = DVector::zeros(heave.len());
+    let mut place = Place { heave, pitch, surge: zero, position: 0.0, height: body.cg_height };
+    if let Some(first) = body.couplings.first() {
+        let (to, at, own) = first.ends();
+        place.position = others[to].position + at - own;
+        place.surge = others[to].along(body.cg_height);
+    }
+    for coupling in &body.couplings {
+        if let Coupling::Hinge { to, at, own, height } = *coupling {
+            place.heave = others[to].at(at) - &place.pitch * own;
+            place.surge = others[to].along(height) + &place.pitch * (body.cg_height - height);
+        }
+    }
+    place
 }

@@ -1,176 +1,375 @@
-//! The vehicle of KTN73 Fig. 2: a rigid body on massless axles, each a tyre in series with a suspension that rubs.
+//! Plane vehicles: rigid bodies on axles, hinged or sprung to each other; trains of forces or masses.
+//!
+//! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
 
-use nalgebra::{Matrix2, SymmetricEigen, Vector2};
-
+use crate::assembly::{Assembly, BuildUp, ContactLaw, Friction, front_first, positions, prefix};
 use crate::error::{Error, finite, not_negative, positive};
 
-/// A massless axle: tyre spring in series with a suspension spring that Coulomb friction bridges.
+/// An axle: a tyre below a suspension, with an unsprung mass between them or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axle {
-    /// Distance ahead of the centre of mass [m].
+    /// Distance ahead of the centre of mass of its body [m].
     pub position: f64,
+    /// Unsprung mass [kg]; 0 for a massless axle.
+    pub mass: f64,
     /// Tyre stiffness [N/m].
     pub tyre_stiffness: f64,
+    /// Tyre damping [N s/m].
+    pub tyre_damping: f64,
     /// Suspension stiffness [N/m].
     pub suspension_stiffness: f64,
-    /// Friction force at which the suspension slides [N]; infinite for a locked suspension.
-    pub friction_limit: f64,
-    /// Friction force in the static state, from −`friction_limit` to +`friction_limit` [N].
-    pub initial_friction: f64,
+    /// Suspension damping [N s/m].
+    pub suspension_damping: f64,
+    /// Friction in the suspension. Beside an unsprung mass a rigid build-up becomes elastic, with
+    /// [`STICK`](crate::assembly::STICK) times the tyre stiffness.
+    pub friction: Friction,
 }
 
 impl Axle {
+    /// Massless, without damping and friction.
+    pub fn new(position: f64, tyre_stiffness: f64, suspension_stiffness: f64) -> Self {
+        Axle {
+            position,
+            mass: 0.0,
+            tyre_stiffness,
+            tyre_damping: 0.0,
+            suspension_stiffness,
+            suspension_damping: 0.0,
+            friction: Friction::NONE,
+        }
+    }
+
     /// Stiffness between road and body while the suspension slides: both springs in series [N/m].
     pub fn sliding_stiffness(&self) -> f64 {
         let (t, s) = (self.tyre_stiffness, self.suspension_stiffness);
         t * s / (t + s)
     }
-
-    /// Stiffness between road and body as long as the friction holds or, with none, always [N/m].
-    pub fn stiffness(&self, suspension: Suspension) -> f64 {
-        match suspension {
-            Suspension::Locked => self.tyre_stiffness,
-            Suspension::Sliding => self.sliding_stiffness(),
-        }
-    }
 }
 
-/// The two linear states of a suspension with friction.
+/// The two linear states of suspensions with friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Suspension {
-    /// Friction holds it: the tyre alone is a spring.
+    /// Friction holds: of a massless axle the tyre alone is a spring, elsewhere the stick acts beside the spring.
     Locked,
-    /// It slides: tyre and suspension in series.
+    /// They slide: springs alone.
     Sliding,
 }
 
-/// A rigid body on its axles.
+/// What joins a body to an earlier one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coupling {
+    /// A fifth wheel, a drawbar, or the pivot of a bogie that equalises its axle loads.
+    Hinge {
+        /// Index of the earlier body.
+        to: usize,
+        /// Distance ahead of the centre of mass of that body [m].
+        at: f64,
+        /// Distance ahead of the centre of mass of the body that has the hinge [m].
+        own: f64,
+        /// Height above the road [m].
+        height: f64,
+    },
+    /// An upright spring and damper: a secondary suspension.
+    Spring {
+        /// Index of the earlier body.
+        to: usize,
+        /// Distance ahead of the centre of mass of that body [m].
+        at: f64,
+        /// Distance ahead of the centre of mass of the body that has the spring [m].
+        own: f64,
+        /// Stiffness [N/m].
+        stiffness: f64,
+        /// Damping [N s/m].
+        damping: f64,
+        /// Friction beside it. A rigid build-up becomes elastic, with [`STICK`](crate::assembly::STICK) times the
+        /// stiffness of the spring.
+        friction: Friction,
+    },
+}
+
+impl Coupling {
+    /// The earlier body, and where it holds on that one and on its own.
+    pub fn ends(&self) -> (usize, f64, f64) {
+        let (Coupling::Hinge { to, at, own, .. } | Coupling::Spring { to, at, own, .. }) = *self;
+        (to, at, own)
+    }
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Pitch inertia about the centre of mass [kg m²].
+    pub pitch_inertia: f64,
+    /// Height of the centre of mass above the road [m].
+    pub cg_height: f64,
+    /// Axles, front first.
+    pub axles: Vec<Axle>,
+    /// What joins it to earlier bodies: nothing for the first.
+    pub couplings: Vec<Coupling>,
+}
+
+/// A vehicle that stands on its own: every value allowed, every motion held, every axle loaded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vehicle {
-    mass: f64,
-    pitch_inertia: f64,
-    cg_height: f64,
+    bodies: Vec<Body>,
     axles: Vec<Axle>,
+    assembly: Assembly,
 }
 
 impl Vehicle {
-    /// Body `mass` [kg], pitch inertia about the centre of mass [kg m²], its height above the road [m], and the axles,
-    /// front first. A vehicle of one axle stands with its centre of mass above it.
+    /// One body of `mass` [kg], pitch inertia about the centre of mass [kg m²], its height above the road [m], and the
+    /// axles, front first. A vehicle of one axle stands with its centre of mass above it.
     pub fn new(mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<Axle>) -> Result<Self, Error> {
-        positive("vehicle mass", mass)?;
-        positive("pitch_inertia", pitch_inertia)?;
-        not_negative("cg_height", cg_height)?;
-        if axles.is_empty() {
-            return Err(Error::input("axles", "[]", "a vehicle needs at least one axle"));
-        }
-        for (k, axle) in axles.iter().enumerate() {
-            let key = |name: &str| format!("axles[{k}].{name}");
-            finite(key("position"), axle.position)?;
-            positive(key("tyre_stiffness"), axle.tyre_stiffness)?;
-            positive(key("suspension_stiffness"), axle.suspension_stiffness)?;
-            if axle.friction_limit.is_nan() || axle.friction_limit < 0.0 {
-                let allowed = "must be 0 or more (inf for a locked suspension)";
-                return Err(Error::input(key("friction_limit"), axle.friction_limit, allowed));
-            }
-            finite(key("initial_friction"), axle.initial_friction)?;
-            if axle.initial_friction.abs() > axle.friction_limit {
-                let allowed = match axle.friction_limit {
-                    0.0 => "must be 0 where friction_limit is 0".to_string(),
-                    limit => format!("must lie within the friction limit, -{limit} to {limit} N"),
-                };
-                return Err(Error::input(key("initial_friction"), format!("{} N", axle.initial_friction), allowed));
-            }
-            if k > 0 && axle.position >= axles[k - 1].position {
-                return Err(Error::input(
-                    key("position"),
-                    format!("{} m", axle.position),
-                    format!("axles go from front to rear: must be less than {} m", axles[k - 1].position),
-                ));
-            }
-        }
-        let vehicle = Vehicle { mass, pitch_inertia, cg_height, axles };
-        for (k, share) in vehicle.load_shares()?.into_iter().enumerate() {
-            if !(share.is_finite() && share > 0.0) {
-                return Err(Error::input(
-                    format!("axles[{k}].position"),
-                    format!("{} m", vehicle.axles[k].position),
-                    "this axle would carry no load: the centre of mass must lie between the axles",
-                ));
-            }
-        }
-        Ok(vehicle)
+        Vehicle::of_bodies(vec![Body { mass, pitch_inertia, cg_height, axles, couplings: Vec::new() }])
     }
 
-    /// Body mass [kg].
+    /// Several bodies, each but the first coupled to earlier ones.
+    pub fn of_bodies(bodies: Vec<Body>) -> Result<Self, Error> {
+        if bodies.is_empty() {
+            return Err(Error::input("bodies", "[]", "a vehicle needs at least one body"));
+        }
+        for b in 0..bodies.len() {
+            check_body(&bodies, b)?;
+        }
+        let order = front_first(&bodies);
+        if order.is_empty() {
+            let key = if bodies.len() == 1 { "axles" } else { "bodies" };
+            return Err(Error::input(key, "[]", "a vehicle needs at least one axle"));
+        }
+        check_upright(&bodies)?;
+        check_apart(&bodies, &order)?;
+        if let [Body { axles, .. }] = &bodies[..]
+            && let [axle] = axles[..]
+            && axle.position != 0.0
+        {
+            let allowed = "must be 0: a vehicle of one axle has its centre of mass above it";
+            return Err(Error::input("axles[0].position", format!("{} m", axle.position), allowed));
+        }
+        let assembly = Assembly::of_bodies(&bodies)?;
+        Ok(Vehicle { axles: order.iter().map(|&(b, i)| bodies[b].axles[i]).collect(), bodies, assembly })
+    }
+
+    /// Constant forces [N] at positions ahead of any point [m], front first.
+    pub fn force_train(loads: &[f64], positions: &[f64]) -> Result<Self, Error> {
+        Vehicle::train("loads", loads, positions, |_| ContactLaw::Force)
+    }
+
+    /// Masses [kg] that follow the road, at positions ahead of any point [m], front first.
+    pub fn moving_masses(masses: &[f64], positions: &[f64]) -> Result<Self, Error> {
+        Vehicle::train("masses", masses, positions, ContactLaw::Mass)
+    }
+
+    fn train(key: &str, values: &[f64], positions: &[f64], law: fn(f64) -> ContactLaw) -> Result<Self, Error> {
+        if values.is_empty() {
+            return Err(Error::input(key, "[]", "must have at least one value"));
+        }
+        if positions.len() != values.len() {
+            let allowed = format!("must be one for each of the {} {key}", values.len());
+            return Err(Error::input("positions", format!("{} values", positions.len()), allowed));
+        }
+        for (k, (value, position)) in values.iter().zip(positions).enumerate() {
+            positive(format!("{key}[{k}]"), *value)?;
+            finite(format!("positions[{k}]"), *position)?;
+            check_behind(format!("positions[{k}]"), *position, k.checked_sub(1).map(|before| positions[before]))?;
+        }
+        let laws = values.iter().map(|value| (*value, law(*value))).collect();
+        Ok(Vehicle { bodies: Vec::new(), axles: Vec::new(), assembly: Assembly::of_contacts(laws, positions) })
+    }
+
+    /// Total mass [kg], unsprung masses included; none of a train of forces.
     pub fn mass(&self) -> f64 {
-        self.mass
+        self.assembly.total_mass
     }
 
-    /// Pitch inertia about the centre of mass [kg m²].
+    /// Pitch inertia of the first body about its centre of mass [kg m²].
     pub fn pitch_inertia(&self) -> f64 {
-        self.pitch_inertia
+        self.bodies.first().map_or(0.0, |body| body.pitch_inertia)
     }
 
-    /// Height of the centre of mass above the road [m].
+    /// Height of the centre of mass of the first body above the road [m].
     pub fn cg_height(&self) -> f64 {
-        self.cg_height
+        self.bodies.first().map_or(0.0, |body| body.cg_height)
     }
 
-    /// Axles, front first.
+    /// Bodies, in the order given; none of a train.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Axles of all bodies, front first, each with its position in its own body; none of a train.
     pub fn axles(&self) -> &[Axle] {
         &self.axles
     }
 
+    /// The vehicle as the time step sees it.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// Distances of the wheel lines ahead of the centre of mass of the whole vehicle [m], front first. A train of forces
+    /// has the centre of its loads in its place.
+    pub fn positions(&self) -> Vec<f64> {
+        self.assembly.contacts.iter().map(|contact| contact.position).collect()
+    }
+
     /// Distance from the first to the last axle [m].
     pub fn wheelbase(&self) -> f64 {
-        self.axles[0].position - self.axles[self.axles.len() - 1].position
+        let contacts = &self.assembly.contacts;
+        contacts[0].position - contacts[contacts.len() - 1].position
     }
 
-    /// Static axle loads [N] under gravity g [m/s²].
-    pub fn static_loads(&self, gravity: f64) -> Vec<f64> {
-        // `new` has refused every vehicle whose shares cannot be found.
-        let shares = self.load_shares().unwrap_or_default();
-        shares.into_iter().map(|share| share * self.mass * gravity).collect()
-    }
-
-    /// Natural frequencies on rigid ground with every suspension in the given state [Hz], ascending.
+    /// Static axle loads [N] under gravity g [m/s²], front first; those of a train of forces do not depend on it.
     ///
-    /// Bounce and pitch; of a single axle bounce alone.
+    /// Two axles under one body share its weight by the lever rule, more as springs in series, friction carrying nothing.
+    pub fn static_loads(&self, gravity: f64) -> Vec<f64> {
+        self.assembly.static_loads(gravity)
+    }
+
+    /// Natural frequencies on rigid ground with every suspension in the given state [Hz], ascending: one for each
+    /// coordinate of the assembly.
     pub fn frequencies(&self, suspension: Suspension) -> Vec<f64> {
-        let stiffness = self.stiffness_matrix(suspension);
-        let root = Vector2::new(self.mass, self.pitch_inertia).map(|m| 1.0 / m.sqrt());
-        let scaled = Matrix2::from_fn(|i, j| root[i] * stiffness[(i, j)] * root[j]);
-        // A bound on the iterations, because stiffnesses that overflow would keep it going.
-        let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, 100);
-        let mut values: Vec<f64> = eigen.map_or(vec![f64::NAN; 2], |e| e.eigenvalues.iter().copied().collect());
-        values.sort_by(f64::total_cmp);
-        let skip = usize::from(self.axles.len() == 1);
-        values[skip..].iter().map(|v| v.max(0.0).sqrt() / std::f64::consts::TAU).collect()
+        self.assembly.vibrations(suspension).0
     }
+}
 
-    /// Stiffness for bounce and pitch: Σ k [1, a; a, a²].
-    fn stiffness_matrix(&self, suspension: Suspension) -> Matrix2<f64> {
-        self.axles
-            .iter()
-            .map(|axle| {
-                let a = Vector2::new(1.0, axle.position);
-                a * a.transpose() * axle.stiffness(suspension)
-            })
-            .sum()
-    }
-
-    /// Shares of the weight: the lever rule for two axles; for more, as springs without friction under a rigid body.
-    fn load_shares(&self) -> Result<Vec<f64>, Error> {
-        if let [axle] = self.axles[..] {
-            return if axle.position == 0.0 {
-                Ok(vec![1.0])
-            } else {
-                let allowed = "must be 0: a vehicle of one axle has its centre of mass above it";
-                Err(Error::input("axles[0].position", format!("{} m", axle.position), allowed))
-            };
+fn check_body(bodies: &[Body], b: usize) -> Result<(), Error> {
+    let (body, prefix) = (&bodies[b], prefix(bodies, b));
+    let key = |name: &str| format!("{prefix}{name}");
+    positive(if bodies.len() == 1 { "vehicle mass".to_string() } else { key("mass") }, body.mass)?;
+    positive(key("pitch_inertia"), body.pitch_inertia)?;
+    not_negative(key("cg_height"), body.cg_height)?;
+    for (k, axle) in body.axles.iter().enumerate() {
+        let key = |name: &str| format!("{prefix}axles[{k}].{name}");
+        finite(key("position"), axle.position)?;
+        not_negative(key("mass"), axle.mass)?;
+        positive(key("tyre_stiffness"), axle.tyre_stiffness)?;
+        not_negative(key("tyre_damping"), axle.tyre_damping)?;
+        positive(key("suspension_stiffness"), axle.suspension_stiffness)?;
+        not_negative(key("suspension_damping"), axle.suspension_damping)?;
+        check_friction(&axle.friction, &key)?;
+        if let (BuildUp::Elastic(stiffness), 0.0) = (axle.friction.build_up, axle.mass) {
+            let allowed = "not for a massless axle, whose friction holds it rigidly; give it a mass, or leaf_decay";
+            return Err(Error::input(key("stick_stiffness"), format!("{stiffness} N/m"), allowed));
         }
-        let lever = self.stiffness_matrix(Suspension::Sliding).lu().solve(&Vector2::new(1.0, 0.0));
-        let sink = lever.ok_or_else(|| Error::input("axles", self.axles.len(), "their positions must differ"))?;
-        Ok(self.axles.iter().map(|axle| axle.sliding_stiffness() * (sink[0] + axle.position * sink[1])).collect())
+        check_behind(key("position"), axle.position, k.checked_sub(1).map(|before| body.axles[before].position))?;
     }
+    check_couplings(bodies, b)
+}
+
+fn check_friction(friction: &Friction, key: &dyn Fn(&str) -> String) -> Result<(), Error> {
+    let limit = friction.limit;
+    if limit.is_nan() || limit < 0.0 {
+        let allowed = "must be 0 or more (inf for a locked suspension)";
+        return Err(Error::input(key("friction_limit"), limit, allowed));
+    }
+    finite(key("initial_friction"), friction.initial)?;
+    if friction.initial.abs() > limit {
+        let allowed = match limit {
+            0.0 => "must be 0 where friction_limit is 0".to_string(),
+            limit => format!("must lie within the friction limit, -{limit} to {limit} N"),
+        };
+        return Err(Error::input(key("initial_friction"), format!("{} N", friction.initial), allowed));
+    }
+    match friction.build_up {
+        BuildUp::Rigid => {}
+        BuildUp::Elastic(stiffness) => {
+            positive(key("stick_stiffness"), stiffness)?;
+        }
+        BuildUp::Leaf(stroke) => {
+            positive(key("leaf_decay"), stroke)?;
+            if limit.is_infinite() {
+                let allowed = "must be finite with leaf_decay, by which friction goes towards it";
+                return Err(Error::input(key("friction_limit"), limit, allowed));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_behind(key: String, position: f64, before: Option<f64>) -> Result<(), Error> {
+    match before {
+        Some(before) if position >= before => {
+            let allowed = format!("axles go from front to rear: must be less than {before} m");
+            Err(Error::input(key, format!("{position} m"), allowed))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_couplings(bodies: &[Body], b: usize) -> Result<(), Error> {
+    let couplings = &bodies[b].couplings;
+    let here = format!("{}couplings", prefix(bodies, b));
+    if b > 0 && couplings.is_empty() {
+        let allowed = "every body but the first must be coupled to an earlier one";
+        return Err(Error::input(here, "[]", allowed));
+    }
+    let mut hinges = 0;
+    for (k, coupling) in couplings.iter().enumerate() {
+        let key = |name: &str| format!("{here}[{k}].{name}");
+        let (to, at, own) = coupling.ends();
+        if to >= b {
+            let allowed = match b {
+                0 => "the first body has no earlier one to be coupled to; couple the others to it".to_string(),
+                1 => "must be an earlier body, 0".to_string(),
+                _ => format!("must be an earlier body, 0 to {}", b - 1),
+            };
+            return Err(Error::input(key("to"), to, allowed));
+        }
+        finite(key("at"), at)?;
+        finite(key("own"), own)?;
+        match coupling {
+            Coupling::Hinge { height, .. } => {
+                not_negative(key("height"), *height)?;
+                hinges += 1;
+            }
+            Coupling::Spring { stiffness, damping, friction, .. } => {
+                positive(key("stiffness"), *stiffness)?;
+                not_negative(key("damping"), *damping)?;
+                check_friction(friction, &key)?;
+            }
+        }
+    }
+    if hinges > 1 {
+        let allowed = "at most one in each body; couple the other body to this one, or use springs";
+        return Err(Error::input(here, format!("{hinges} hinges"), allowed));
+    }
+    Ok(())
+}
+
+/// Refuses a body whose couplings put it at different places along the road.
+fn check_upright(bodies: &[Body]) -> Result<(), Error> {
+    let positions = positions(bodies);
+    for (b, body) in bodies.iter().enumerate() {
+        for (k, coupling) in body.couplings.iter().enumerate() {
+            let (to, at, own) = coupling.ends();
+            let (there, here) = (positions[to] + at, positions[b] + own);
+            if (there - here).abs() > 1e-6 * (1.0 + there.abs()) {
+                return Err(Error::input(
+                    format!("{}couplings[{k}].own", prefix(bodies, b)),
+                    format!("{own} m"),
+                    format!("couplings stand upright: must be {} m as the first has it", there - positions[b]),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses axles of different bodies at the same place.
+fn check_apart(bodies: &[Body], order: &[(usize, usize)]) -> Result<(), Error> {
+    let positions = positions(bodies);
+    let at = |(b, i): (usize, usize)| positions[b] + bodies[b].axles[i].position;
+    for pair in order.windows(2) {
+        let [(b, i), (other, j)] = [pair[0], pair[1]];
+        if at((other, j)) >= at((b, i)) {
+            return Err(Error::input(
+                format!("bodies[{other}].axles[{j}].position"),
+                format!("{} m", bodies[other].axles[j].position),
+                format!("must not be where bodies[{b}].axles[{i}] is"),
+            ));
+        }
+    }
+    Ok(())
 }

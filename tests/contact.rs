@@ -7,6 +7,7 @@ use faer::linalg::solvers::Solve;
 use problems::{POUND, kishan_vehicle};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use spanwise::assembly::Friction;
 use spanwise::contact::{self, Contact};
 use spanwise::vehicle::Axle;
 
@@ -38,12 +39,12 @@ impl Wheel {
 
     /// Friction if the suspension has length s under total shortening d.
     fn friction(&self, d: f64, s: f64) -> f64 {
-        self.axle.initial_friction + self.axle.tyre_stiffness * (d - s) - self.axle.suspension_stiffness * s
+        self.axle.friction.initial + self.axle.tyre_stiffness * (d - s) - self.axle.suspension_stiffness * s
     }
 
     /// Where the suspension goes under total shortening d: nowhere, if friction holds, else as far as it must.
     fn slip(&self, d: f64) -> f64 {
-        let limit = self.axle.friction_limit;
+        let limit = self.axle.friction.limit;
         let trial = self.friction(d, self.shortening);
         if trial.abs() <= limit {
             return self.shortening;
@@ -74,13 +75,8 @@ prop_compose! {
         share in prop_oneof![Just(0.0), 0.0..0.4_f64], initial in -1.0..1.0_f64, shortening in -0.03..0.03_f64,
     ) -> Wheel {
         let friction_limit = share * load;
-        let axle = Axle {
-            position: 0.0,
-            tyre_stiffness: tyre,
-            suspension_stiffness: spring,
-            friction_limit,
-            initial_friction: initial * friction_limit,
-        };
+        let friction = Friction { initial: initial * friction_limit, ..Friction::coulomb(friction_limit) };
+        let axle = Axle { friction, ..Axle::new(0.0, tyre, spring) };
         Wheel { axle, static_load: load, shortening }
     }
 }
@@ -121,11 +117,11 @@ fn consistent(wheels: &[Wheel], u: &[f64], s: &[f64], doing: &[Doing], near: f64
     let n = wheels.len();
     let stiffness_and_constant = |k: usize| {
         let Wheel { axle, static_load, shortening } = wheels[k];
-        let slide = |limit: f64| axle.sliding_stiffness() * (limit - axle.initial_friction) / axle.suspension_stiffness;
+        let slide = |limit: f64| axle.sliding_stiffness() * (limit - axle.friction.initial) / axle.suspension_stiffness;
         match doing[k] {
             Doing::Sticks => (axle.tyre_stiffness, -axle.tyre_stiffness * shortening),
-            Doing::Shortens => (axle.sliding_stiffness(), slide(axle.friction_limit)),
-            Doing::Lengthens => (axle.sliding_stiffness(), slide(-axle.friction_limit)),
+            Doing::Shortens => (axle.sliding_stiffness(), slide(axle.friction.limit)),
+            Doing::Lengthens => (axle.sliding_stiffness(), slide(-axle.friction.limit)),
             Doing::Flies => (0.0, -static_load),
         }
     };
@@ -137,7 +133,7 @@ fn consistent(wheels: &[Wheel], u: &[f64], s: &[f64], doing: &[Doing], near: f64
         let slack = near * wheel.static_load;
         let d = u[k] - (0..n).map(|j| s[k * n + j] * p[(j, 0)]).sum::<f64>();
         let trial = wheel.friction(d, wheel.shortening);
-        let limit = wheel.axle.friction_limit;
+        let limit = wheel.axle.friction.limit;
         let on_the_road = p[(k, 0)] >= -wheel.static_load - slack;
         match doing[k] {
             Doing::Sticks => on_the_road && trial.abs() <= limit + slack,
@@ -166,9 +162,9 @@ proptest! {
 
         // The suspension it leaves behind: on the road it went where the law says, in the air it has let go.
         let (s, friction) = wheel.contact().settle(p, wheel.shortening);
-        let limit = wheel.axle.friction_limit;
+        let limit = wheel.axle.friction.limit;
         prop_assert!(friction.abs() <= limit);
-        let carried = wheel.axle.suspension_stiffness * s + friction - wheel.axle.initial_friction;
+        let carried = wheel.axle.suspension_stiffness * s + friction - wheel.axle.friction.initial;
         prop_assert!((carried - p).abs() <= BISECTED * wheel.static_load, "carries {carried} N of {p} N");
         if p > -wheel.static_load {
             let expected = wheel.slip(u - compliance * p);
@@ -250,6 +246,6 @@ fn the_axle_of_the_paper() {
         (-1.0, -32.04),
     ] {
         let p = contact.solve(feet * foot, 0.0, 0.0);
-        assert!((p - kilopounds * 1e3 * POUND).abs() <= BISECTED * axle.friction_limit, "{feet} ft: {p} N");
+        assert!((p - kilopounds * 1e3 * POUND).abs() <= BISECTED * axle.friction.limit, "{feet} ft: {p} N");
     }
 }

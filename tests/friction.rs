@@ -3,6 +3,7 @@
 mod problems;
 
 use problems::*;
+use spanwise::assembly::Friction;
 use spanwise::crossing::Settings;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
@@ -32,10 +33,10 @@ fn apart(a: &Run, b: &Run) -> f64 {
 
 #[test]
 fn no_friction_is_both_springs_in_series() {
-    let sliding = crossed(&vehicle(|axle| axle.friction_limit = 0.0));
+    let sliding = crossed(&vehicle(|axle| axle.friction.limit = 0.0));
     let series = crossed(&vehicle(|axle| {
         axle.tyre_stiffness = axle.sliding_stiffness();
-        axle.friction_limit = f64::INFINITY;
+        axle.friction.limit = f64::INFINITY;
     }));
     let apart = apart(&sliding, &series);
     println!("{apart:.1e}");
@@ -44,17 +45,17 @@ fn no_friction_is_both_springs_in_series() {
 
 #[test]
 fn infinite_friction_is_the_tyre_alone() {
-    let locked = crossed(&vehicle(|axle| axle.friction_limit = f64::INFINITY));
+    let locked = crossed(&vehicle(|axle| axle.friction.limit = f64::INFINITY));
     assert!(locked.outcome.history.shortenings.iter().all(|&s| s == 0.0));
     // Of a suspension that never moves the stiffness does not matter.
     let other = crossed(&vehicle(|axle| {
         axle.suspension_stiffness *= 3.0;
-        axle.friction_limit = f64::INFINITY;
+        axle.friction.limit = f64::INFINITY;
     }));
     // A rigid suspension does not move either.
     let rigid = crossed(&vehicle(|axle| {
         axle.suspension_stiffness = 1e14 * axle.tyre_stiffness;
-        axle.friction_limit = 0.0;
+        axle.friction.limit = 0.0;
     }));
     for (name, other) in [("stiffer", &other), ("rigid", &rigid)] {
         let apart = apart(&locked, other);
@@ -88,7 +89,7 @@ fn friction_stays_within_its_limit() {
 fn initial_friction_matters() {
     let limit = 4800.0 * POUND;
     let factors = [-1.0, 0.0, 1.0].map(|share| {
-        let run = crossed(&vehicle(|axle| axle.initial_friction = share * limit));
+        let run = crossed(&vehicle(|axle| axle.friction.initial = share * limit));
         assert!(run.outcome.history.friction.iter().all(|f| f.abs() <= limit));
         assert_eq!(run.outcome.history.friction[0], share * limit);
         run.impact(Quantity::Deflection)[run.section(run.bridge.stations()[1].at)]
@@ -102,7 +103,8 @@ fn initial_friction_matters() {
 /// On a vehicle without friction the state it starts in is the one it has.
 #[test]
 fn initial_friction_within_the_limit() {
-    let axle = Axle { friction_limit: 100.0, initial_friction: 100.1, ..kishan_vehicle().axles()[0] };
+    let friction = Friction { initial: 100.1, ..Friction::coulomb(100.0) };
+    let axle = Axle { friction, ..kishan_vehicle().axles()[0] };
     let refused = Vehicle::new(1e4, 1e4, 1.0, vec![Axle { position: 0.0, ..axle }]).unwrap_err();
     assert!(refused.is_input() && refused.to_string().contains("initial_friction"), "{refused}");
 }

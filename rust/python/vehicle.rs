@@ -4,6 +4,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 use super::Vector;
+use crate::assembly::{BuildUp, Friction};
 use crate::vehicle::{self, Axle, Suspension};
 
 /// A rigid body on massless axles with friction.
@@ -16,11 +17,8 @@ impl PyVehicle {
     #[pyo3(signature = (*, mass, pitch_inertia, cg_height, axles))]
     fn new(mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<[f64; 5]>) -> PyResult<Self> {
         let axles = axles.into_iter().map(|[position, tyre, suspension, limit, initial]| Axle {
-            position,
-            tyre_stiffness: tyre,
-            suspension_stiffness: suspension,
-            friction_limit: limit,
-            initial_friction: initial,
+            friction: Friction { limit, initial, build_up: BuildUp::Rigid },
+            ..Axle::new(position, tyre, suspension)
         });
         Ok(PyVehicle(vehicle::Vehicle::new(mass, pitch_inertia, cg_height, axles.collect())?))
     }

@@ -6,6 +6,7 @@ pub mod elements;
 
 use faer::Mat;
 use spanwise::analysis::{Analysis, Outcome};
+use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Fixity, Stations, Support};
 use spanwise::crossing::{Damping, Drive, Settings};
 use spanwise::error::Error;
@@ -138,11 +139,8 @@ pub fn kishan_vehicle() -> Vehicle {
 
 pub fn kishan_vehicle_with_friction(friction_limit: f64) -> Vehicle {
     let axle = |position: f64| Axle {
-        position,
-        tyre_stiffness: 480_000.0 * POUND / FOOT,
-        suspension_stiffness: 270_000.0 * POUND / FOOT,
-        friction_limit,
-        initial_friction: 0.0,
+        friction: Friction::coulomb(friction_limit),
+        ..Axle::new(position, 480_000.0 * POUND / FOOT, 270_000.0 * POUND / FOOT)
     };
     Vehicle::new(
         2.0 * 32_040.0 * POUND / 9.806_65,
@@ -160,13 +158,7 @@ pub fn linear_vehicles() -> [Vehicle; 2] {
 
 /// A single sprung mass on a spring, without friction to slide [kg, N/m].
 pub fn sprung_mass(mass: f64, stiffness: f64) -> Vehicle {
-    let axle = Axle {
-        position: 0.0,
-        tyre_stiffness: stiffness,
-        suspension_stiffness: stiffness,
-        friction_limit: f64::INFINITY,
-        initial_friction: 0.0,
-    };
+    let axle = Axle { friction: Friction::coulomb(f64::INFINITY), ..Axle::new(0.0, stiffness, stiffness) };
     Vehicle::new(mass, 1.0, 0.0, vec![axle]).unwrap()
 }
 
@@ -318,7 +310,7 @@ impl Run {
             let springs = vehicle.axles().iter().enumerate().map(|(k, axle)| {
                 // The suspension spring carries the static load less the friction there is in that state.
                 let shortened = axle.suspension_stiffness * history.shortenings[history.axles * i + k];
-                let spring = history.static_loads[k] - axle.initial_friction + shortened;
+                let spring = history.static_loads[k] - axle.friction.initial + shortened;
                 row.loads[k].powi(2) / (2.0 * axle.tyre_stiffness) + spring.powi(2) / (2.0 * axle.suspension_stiffness)
             });
             strain[i] + moving + springs.sum::<f64>() - vehicle.mass() * gravity * body[0]
