@@ -1,7 +1,7 @@
 //! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
 
 use crate::bridge::Bridge;
-use crate::crossing::{Damping, ModalBridge, Settings, cross};
+use crate::crossing::{Damping, ModalBridge, Passage, Settings, cross_all};
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
@@ -57,14 +57,24 @@ impl Analysis {
         Ok(Analysis { sections, flexibility, modes, model, responses, rows })
     }
 
-    /// One crossing.
+    /// One crossing by one vehicle.
     pub fn cross(
         &self,
         vehicle: &Vehicle,
         settings: &Settings,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Outcome, Error> {
-        let history = cross(&self.model, vehicle, settings, go_on)?;
+        self.cross_all(&[Passage::of(vehicle.clone())], settings, go_on)
+    }
+
+    /// One crossing by several vehicles.
+    pub fn cross_all(
+        &self,
+        passages: &[Passage],
+        settings: &Settings,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Outcome, Error> {
+        let history = cross_all(&self.model, passages, settings, go_on)?;
         let packed = self.rows.pack_history(&history);
         let envelope = survey(&history, &self.rows, &packed, &self.responses, go_on)?;
         Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope })

@@ -110,6 +110,33 @@ pub enum BuildUp {
     Leaf(f64),
 }
 
+impl ContactPoint {
+    /// Static load [N] under gravity [m/s²].
+    pub fn static_load(&self, gravity: f64) -> f64 {
+        if self.law == ContactLaw::Force { self.share } else { self.share * gravity }
+    }
+}
+
+impl ContactLaw {
+    /// Stiffness of the tyre, if there is one [N/m].
+    pub fn tyre_stiffness(&self) -> f64 {
+        match *self {
+            ContactLaw::Tyre { stiffness, .. } => stiffness,
+            ContactLaw::Series { tyre_stiffness, .. } => tyre_stiffness,
+            ContactLaw::Mass(_) | ContactLaw::Force => 0.0,
+        }
+    }
+
+    /// Whether the force follows from the shortening alone, not from its rates.
+    pub fn is_plain(&self) -> bool {
+        match *self {
+            ContactLaw::Tyre { damping, .. } | ContactLaw::Series { tyre_damping: damping, .. } => damping == 0.0,
+            ContactLaw::Mass(_) => false,
+            ContactLaw::Force => true,
+        }
+    }
+}
+
 impl Friction {
     /// None.
     pub const NONE: Friction = Friction { limit: 0.0, initial: 0.0, build_up: BuildUp::Rigid };
@@ -271,10 +298,17 @@ impl Assembly {
         }
     }
 
+    /// What braked wheels that stand still add to the mass: the whole vehicle moves along the road as it rocks about them.
+    pub fn standing_mass(&self) -> DMatrix<f64> {
+        let mean = self.contacts.iter().fold(DVector::zeros(self.mass.nrows()), |sum, contact| {
+            sum + &contact.surge_row * (contact.share / self.total_mass)
+        });
+        &mean * mean.transpose() * self.total_mass
+    }
+
     /// Static loads of the contacts [N] under gravity [m/s²], front first.
     pub fn static_loads(&self, gravity: f64) -> Vec<f64> {
-        let load = |c: &ContactPoint| if c.law == ContactLaw::Force { c.share } else { c.share * gravity };
-        self.contacts.iter().map(load).collect()
+        self.contacts.iter().map(|contact| contact.static_load(gravity)).collect()
     }
 
     /// Stiffness on rigid ground, tyres and all, with every suspension in the given state.

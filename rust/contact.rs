@@ -73,7 +73,7 @@ impl<L: Lane> Suspension<L> {
 impl<L: Lane> Contact<L> {
     /// Of a contact under gravity [m/s²], for steps of h [s]; a `bilateral` one pulls rather than lift off.
     pub fn new(point: &ContactPoint, gravity: f64, h: f64, bilateral: bool) -> Self {
-        let static_load = point.share * gravity;
+        let static_load = point.static_load(gravity);
         let (value, rate, acceleration, stiffness) = match point.law {
             ContactLaw::Tyre { stiffness, damping } => (1.0, damping / stiffness, 0.0, stiffness),
             ContactLaw::Series { tyre_stiffness, tyre_damping, .. } => {

@@ -1,15 +1,23 @@
 //! One crossing: from the front axle at the start of the approach until the last axle has left and the tail is over.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
 use crate::error::{Error, finite, not_negative, positive};
 use crate::flexibility::Flexibility;
-use crate::history::History;
+use crate::history::{Columns, History};
 use crate::line::Line;
+use crate::modal::ModalDamping;
 use crate::modes::Modes;
-use crate::path::{ModeShapes, Prescribed, Rolling};
-use crate::step::{Body, Geometry, ModalDamping, Stepper, Unsettled};
+use crate::motion::Motion;
+use crate::newmark::Coordinate;
+use crate::path::{Free, Ground, ModeShapes, Pavement, Prescribed};
+use crate::rig::Rig;
+use crate::road::Road;
+use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, Stepper, Unsettled};
 use crate::vehicle::{Suspension, Vehicle};
 
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
@@ -27,13 +35,86 @@ const STEPS_PER_PANEL: f64 = 100.0;
 /// Steps between two questions whether to go on.
 const POLL_EVERY: usize = 1024;
 
-/// How the vehicle moves along the bridge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Way in front of an axle that the road's unevenness needs at most in one step unless the user gives a step [m]: a fifth
+/// of the shortest wave that is usual.
+const WAY_PER_STEP: f64 = 0.05;
+
+/// How a vehicle moves along the bridge.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Drive {
     /// At the given speed throughout.
     ConstantSpeed,
     /// Traction and resistance in balance on the level: the speed follows the slope under the axles (KTN73 §4).
     ConstantTraction,
+    /// With constant acceleration [m/s²] from the start of the approach; one that slows down stands in the end.
+    Acceleration(f64),
+    /// Through given speeds [m/s] at given times [s] after the vehicle's entry, linear between them.
+    Speeds {
+        /// Times [s], ascending.
+        times: Vec<f64>,
+        /// Speeds [m/s].
+        speeds: Vec<f64>,
+    },
+    /// As at constant traction, and from a point on with the brakes on.
+    Braking(Braking),
+}
+
+/// How a vehicle brakes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Braking {
+    /// Deceleration asked for, shared out among the wheels like their static loads [m/s²].
+    pub deceleration: f64,
+    /// Where the front axle is when braking begins, from the end of the bridge at which it enters [m].
+    pub from: f64,
+    /// Time in which the brake forces grow [s].
+    pub ramp: f64,
+    /// Coefficient of friction between tyre and road: bound of each brake force relative to the axle load.
+    pub adhesion: f64,
+}
+
+/// The direction of travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From the left end to the right.
+    Right,
+    /// From the right end to the left.
+    Left,
+}
+
+impl Direction {
+    /// +1 to the right, −1 to the left.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Right => 1.0,
+            Direction::Left => -1.0,
+        }
+    }
+}
+
+/// A vehicle among others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// Speed at the start [m/s], if not that of the [`Settings`].
+    pub speed: Option<f64>,
+    /// How it moves, if not as the [`Settings`] say.
+    pub drive: Option<Drive>,
+    /// Where it goes.
+    pub direction: Direction,
+    /// When its front axle is at the start of the approach [s].
+    pub entry: f64,
+    /// Vehicles of the same lane must not overlap.
+    pub lane: i64,
+    /// The road under it, if not that of the [`Settings`].
+    pub road: Option<Arc<Road>>,
+}
+
+impl Passage {
+    /// Of a vehicle that enters at the left end at once.
+    pub fn of(vehicle: Vehicle) -> Self {
+        Passage { vehicle, speed: None, drive: None, direction: Direction::Right, entry: 0.0, lane: 0, road: None }
+    }
 }
 
 /// Viscous damping of the bridge.
@@ -122,18 +203,22 @@ impl ModalBridge {
         })
     }
 
-    /// Upper bound of the fastest circular frequency of bridge and vehicle together, suspensions locked [rad/s].
-    pub fn fastest_frequency(&self, vehicle: &Vehicle) -> f64 {
+    /// Upper bound of the fastest circular frequency of bridge and vehicles together, suspensions locked [rad/s].
+    pub fn fastest_frequency<'a>(&self, vehicles: impl Iterator<Item = &'a Vehicle>) -> f64 {
         // The stiffness is that of the bridge plus that of the contact springs, whose largest eigenvalue is at most the
-        // vehicle's own plus the sum of k φ² (Weyl's inequality, and the trace).
+        // largest of the vehicles' own plus the sum of k φ² (Weyl's inequality, and the trace).
         let bridge = self.omega.iter().copied().fold(0.0, f64::max);
-        let own = vehicle.frequencies(Suspension::Locked).into_iter().fold(0.0, f64::max) * std::f64::consts::TAU;
-        let tyres: f64 = vehicle.axles().iter().map(|axle| axle.tyre_stiffness).sum();
+        let (mut own, mut tyres) = (0.0_f64, 0.0);
+        for vehicle in vehicles {
+            own = vehicle.frequencies(Suspension::Locked).into_iter().fold(own, f64::max);
+            tyres += vehicle.assembly().contacts.iter().map(|c| c.law.tyre_stiffness()).sum::<f64>();
+        }
+        let own = own * std::f64::consts::TAU;
         (bridge.powi(2) + own.powi(2) + tyres * self.shapes.largest_sum_of_squares()).sqrt()
     }
 }
 
-/// How a vehicle crosses.
+/// How vehicles cross.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Speed at the start [m/s].
@@ -143,14 +228,21 @@ pub struct Settings {
     /// Newmark's β, from 1/12 to 1/2 [-].
     pub beta: f64,
     /// Longest time step [s]; shortened so that a whole number of steps spans the crossing. By default a twentieth of the
-    /// shortest coupled period or a hundredth of the narrowest panel, whichever takes less time.
+    /// shortest coupled period, a hundredth of the narrowest panel or, on an uneven road, 50 mm of way, whichever takes
+    /// less time.
     pub step: Option<f64>,
-    /// Rigid approach in front of the bridge [m].
+    /// Approach in front of the bridge [m].
     pub approach: f64,
-    /// Free vibration kept after the last axle has left [s].
+    /// Way from the start of the approach on which the road's unevenness fades in [m].
+    pub ramp: f64,
+    /// Free vibration kept after the last axle has left, or the last vehicle has stopped [s].
     pub tail: f64,
     /// Gravity [m/s²].
     pub gravity: f64,
+    /// Whether wheels leave the road; if not, their loads may become negative.
+    pub lift_off: bool,
+    /// The road.
+    pub road: Arc<Road>,
 }
 
 impl Settings {
@@ -162,14 +254,21 @@ impl Settings {
             beta: 1.0 / 6.0,
             step: None,
             approach: 0.0,
+            ramp: 0.0,
             tail: 0.0,
             gravity: 9.806_65,
+            lift_off: true,
+            road: Arc::new(Road::smooth()),
         }
     }
 
     fn check(&self) -> Result<(), Error> {
-        positive("speed", self.speed)?;
         not_negative("approach", self.approach)?;
+        not_negative("ramp", self.ramp)?;
+        if self.ramp > self.approach {
+            let allowed = format!("must not be longer than the approach, {} m", self.approach);
+            return Err(Error::input("ramp", format!("{} m", self.ramp), allowed));
+        }
         not_negative("tail", self.tail)?;
         positive("gravity", self.gravity)?;
         if let Some(step) = self.step {
@@ -184,39 +283,147 @@ impl Settings {
         }
         Ok(())
     }
+}
 
-    /// Way of the front axle until the last axle leaves the bridge [m].
-    fn path(&self, model: &ModalBridge, vehicle: &Vehicle) -> f64 {
-        self.approach + model.shapes.mesh().length() + vehicle.wheelbase()
+/// A vehicle on its way: what a passage and the settings come to.
+struct Course<'a> {
+    vehicle: &'a Vehicle,
+    direction: Direction,
+    lane: i64,
+    road: &'a Road,
+    /// Its axles among all.
+    axles: Range<usize>,
+    /// Distance of each behind the first [m].
+    behind: Vec<f64>,
+    /// The front axle, from the end of the bridge at which it enters, in time since its entry; if it rolls freely, as it
+    /// would at the speed it starts with.
+    motion: Motion,
+    entry: f64,
+    speed: f64,
+    rolls: bool,
+    braking: Option<Braking>,
+}
+
+impl<'a> Course<'a> {
+    fn new(passage: &'a Passage, settings: &'a Settings, key: &str, first: usize) -> Result<Self, Error> {
+        let speed = passage.speed.unwrap_or(settings.speed);
+        let drive = passage.drive.as_ref().unwrap_or(&settings.drive);
+        not_negative(format!("{key}entry"), passage.entry)?;
+        let start = -settings.approach;
+        let motion = match drive {
+            Drive::Speeds { times, speeds } => Motion::through(start, times, speeds)?,
+            Drive::Acceleration(a) => {
+                Motion::accelerated(start, positive(format!("{key}speed"), speed)?, *a)?
+            }
+            _ => Motion::steady(start, positive(format!("{key}speed"), speed)?),
+        };
+        let rolls = matches!(drive, Drive::ConstantTraction | Drive::Braking(_));
+        let assembly = passage.vehicle.assembly();
+        if rolls && assembly.mass.nrows() == 0 {
+            let allowed = "forces and masses without a vehicle move as prescribed: use constant-speed, an acceleration \
+                           or a speed history";
+            let name = if matches!(drive, Drive::Braking(_)) { "braking" } else { "constant-traction" };
+            return Err(Error::input(format!("{key}drive"), format!("\"{name}\""), allowed));
+        }
+        let braking = match drive {
+            Drive::Braking(braking) => {
+                positive("braking deceleration", braking.deceleration)?;
+                finite("braking start", braking.from)?;
+                not_negative("braking ramp", braking.ramp)?;
+                positive("braking adhesion", braking.adhesion)?;
+                Some(*braking)
+            }
+            _ => None,
+        };
+        let front = assembly.contacts[0].position;
+        let behind: Vec<f64> = assembly.contacts.iter().map(|c| front - c.position).collect();
+        Ok(Course {
+            vehicle: &passage.vehicle,
+            direction: passage.direction,
+            lane: passage.lane,
+            road: passage.road.as_deref().unwrap_or(&settings.road),
+            axles: first..first + behind.len(),
+            behind,
+            speed: motion.at(0.0).v,
+            motion,
+            entry: passage.entry,
+            rolls,
+            braking,
+        })
     }
 
-    /// Where the centre of mass starts, from the left end of the bridge [m].
-    fn start(&self, vehicle: &Vehicle) -> f64 {
-        -self.approach - vehicle.axles()[0].position
+    /// From the first to the last axle [m].
+    fn wheelbase(&self) -> f64 {
+        self.behind[self.behind.len() - 1]
     }
 
-    /// Time step and number of steps for a path of this length [m], without the tail.
-    fn steps(&self, model: &ModalBridge, vehicle: &Vehicle, path: f64) -> Result<(f64, usize), Error> {
-        let fastest = model.fastest_frequency(vehicle);
-        let limit = if self.beta < 0.25 { 1.0 / (fastest * (0.25 - self.beta).sqrt()) } else { f64::INFINITY };
+    /// An own axle at time t, along the bridge.
+    fn axle(&self, own: usize, t: f64, length: f64) -> Coordinate<f64> {
+        let Coordinate { x, v, a } = self.motion.at(t - self.entry);
+        let x = x - self.behind[own];
+        match self.direction {
+            Direction::Right => Coordinate { x, v, a },
+            Direction::Left => Coordinate { x: length - x, v: -v, a: -a },
+        }
+    }
+
+    /// The centre of mass at time t, from the end at which the vehicle enters.
+    fn centre(&self, t: f64) -> Coordinate<f64> {
+        let Coordinate { x, v, a } = self.motion.at(t - self.entry);
+        Coordinate { x: x - self.vehicle.assembly().contacts[0].position, v, a }
+    }
+
+    /// When it has left the bridge, or stands for good; of one that rolls, an estimate.
+    fn end(&self, length: f64) -> f64 {
+        let exit = self.motion.time_at(length + self.wheelbase());
+        self.entry + exit.or(self.motion.stands_from()).unwrap_or(f64::INFINITY)
+    }
+}
+
+/// Steps of a crossing.
+struct Steps {
+    /// Length [s].
+    h: f64,
+    /// Number without the tail, if all vehicles move as prescribed; else about this many.
+    count: usize,
+}
+
+impl Steps {
+    fn plan(model: &ModalBridge, courses: &[Course<'_>], settings: &Settings) -> Result<Self, Error> {
+        let length = model.shapes.mesh().length();
+        let fastest = model.fastest_frequency(courses.iter().map(|course| course.vehicle));
+        let limit = if settings.beta < 0.25 { 1.0 / (fastest * (0.25 - settings.beta).sqrt()) } else { f64::INFINITY };
         let resolved = std::f64::consts::TAU / fastest / STEPS_PER_PERIOD;
-        let longest = self.step.unwrap_or(resolved.min(model.narrowest_panel / STEPS_PER_PANEL / self.speed));
+        let uneven = courses.iter().any(|course| !course.road.is_smooth());
+        let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
+        let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
+        let way = model.narrowest_panel / STEPS_PER_PANEL;
+        let way = if uneven { way.min(WAY_PER_STEP) } else { way };
+        let longest = settings.step.unwrap_or(resolved.min(way / speed));
         if longest > limit {
             let frequency = fastest / std::f64::consts::TAU;
-            return Err(Error::StepTooLong { step: longest, beta: self.beta, limit, frequency });
+            return Err(Error::StepTooLong { step: longest, beta: settings.beta, limit, frequency });
+        }
+        let span = courses.iter().map(|course| course.end(length)).fold(0.0, f64::max);
+        if !span.is_finite() {
+            let allowed = "the vehicle must leave the bridge or come to a stop";
+            return Err(Error::input("speed", "0 m/s for good, before the end", allowed));
         }
         // A path of a whole number of steps is not given one more because of rounding.
-        let count = (path / (self.speed * longest) - 1e-9).ceil().max(1.0);
-        let steps = count + self.tail / longest;
+        let count = (span / longest - 1e-9).ceil().max(1.0);
+        let steps = count + settings.tail / longest;
         if steps > MAX_STEPS as f64 {
-            let (key, value) = match self.step {
-                _ if self.tail / longest > 0.5 * steps => ("tail", format!("{:e} s", self.tail)),
-                _ if self.approach > 0.5 * path => ("approach", format!("{:e} m", self.approach)),
+            let first = settings.approach / courses[0].speed.max(1e-300);
+            let late = courses.iter().map(|course| course.entry).fold(0.0, f64::max);
+            let (key, value) = match settings.step {
+                _ if settings.tail / longest > 0.5 * steps => ("tail", format!("{:e} s", settings.tail)),
+                _ if first > 0.5 * span => ("approach", format!("{:e} m", settings.approach)),
+                _ if late > 0.5 * span => ("entry", format!("{late:e} s")),
                 Some(step) => ("step", format!("{step:e} s")),
-                None => ("speed", format!("{:e} m/s", self.speed)),
+                None => ("speed", format!("{speed:e} m/s")),
             };
             let mut allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
-            if self.step.is_none() {
+            if settings.step.is_none() {
                 allowed += &format!(
                     " (the default step is {longest:.3e} s, for a narrowest panel of {:.3e} m and a shortest period of \
                      {:.3e} s; give step to choose another)",
@@ -227,8 +434,10 @@ impl Settings {
             return Err(Error::input(key, value, allowed));
         }
         // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
-        let (modes, axles) = (model.omega.len(), vehicle.axles().len());
-        let bytes = steps * (size_of::<f64>() * (10 + 5 * modes + 8 * axles + modes * axles)) as f64;
+        let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
+        let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
+        let numbers = 1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles;
+        let bytes = steps * (size_of::<f64>() * numbers) as f64;
         if bytes > MAX_HISTORY_BYTES {
             let allowed = format!(
                 "{steps:.3e} steps would take {:.1} GB of memory, more than {:.1}: use fewer modes or a longer step",
@@ -237,8 +446,14 @@ impl Settings {
             );
             return Err(Error::input("modes", modes, allowed));
         }
-        Ok((path / (self.speed * count), count as usize))
+        Ok(Steps { h: span / count, count: count as usize })
     }
+}
+
+/// Highest speed before the last axle has left, where speeds grow for ever [m/s].
+fn fastest_on_the_way(courses: &[Course<'_>], length: f64) -> f64 {
+    let at_end = courses.iter().map(|course| course.motion.at(course.end(length) - course.entry).v);
+    courses.iter().map(|course| course.speed).chain(at_end).filter(|v| v.is_finite()).fold(0.0, f64::max)
 }
 
 /// Crosses the bridge once. `go_on` is asked now and then; when it says no, the crossing ends as interrupted.
@@ -248,88 +463,293 @@ pub fn cross(
     settings: &Settings,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<History, Error> {
+    cross_all(model, &[Passage::of(vehicle.clone())], settings, go_on)
+}
+
+/// Crosses the bridge with several vehicles at once.
+pub fn cross_all(
+    model: &ModalBridge,
+    passages: &[Passage],
+    settings: &Settings,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<History, Error> {
     settings.check()?;
-    let path = settings.path(model, vehicle);
-    let (h, steps) = settings.steps(model, vehicle, path)?;
-    match settings.drive {
-        Drive::ConstantSpeed => {
-            let front = vehicle.axles()[0].position;
-            let behind = vehicle.axles().iter().map(|axle| front - axle.position).collect();
-            // One more than needed, so that rounding of the tail does not matter.
-            let with_tail = steps + (settings.tail / h).ceil() as usize + 1;
-            let advance = path / steps as f64;
-            let geometry = Prescribed::new(&model.shapes, behind, -settings.approach, advance, with_tail);
-            march(model, vehicle, settings, h, geometry, go_on)
-        }
-        Drive::ConstantTraction => {
-            let arms = vehicle.axles().iter().map(|axle| axle.position).collect();
-            let geometry = Rolling::new(&model.shapes, arms, vehicle.cg_height(), settings.start(vehicle));
-            march(model, vehicle, settings, h, geometry, go_on)
-        }
+    if passages.is_empty() {
+        return Err(Error::input("vehicles", "[]", "at least one vehicle must cross"));
+    }
+    let length = model.shapes.mesh().length();
+    let mut courses: Vec<Course<'_>> = Vec::with_capacity(passages.len());
+    for (i, passage) in passages.iter().enumerate() {
+        let key = if passages.len() == 1 { String::new() } else { format!("vehicles[{i}].") };
+        let course = Course::new(passage, settings, &key, courses.last().map_or(0, |c| c.axles.end))?;
+        check_road(&course, settings, length)?;
+        courses.push(course);
+    }
+    let steps = Steps::plan(model, &courses, settings)?;
+    let ground = Ground {
+        shapes: &model.shapes,
+        pavements: courses.iter().map(|course| pavement(course, settings, length)).collect(),
+        vehicle: courses.iter().enumerate().flat_map(|(v, c)| vec![v; c.behind.len()]).collect(),
+    };
+    let owner = ground.vehicle.clone();
+    let own = |axle: usize| (&courses[owner[axle]], axle - courses[owner[axle]].axles.start);
+    let motion = |step: usize, axle: usize| {
+        let (course, own) = own(axle);
+        course.axle(own, step as f64 * steps.h, length)
+    };
+    if courses.iter().any(|course| course.rolls) {
+        let free = |step: usize, axle: usize| (!own(axle).0.rolls).then(|| motion(step, axle));
+        let mirrored = courses.iter().map(|course| course.direction == Direction::Left).collect();
+        let start = (0..owner.len()).map(|axle| motion(0, axle)).collect();
+        let mut geometry = Free::new(ground, free, mirrored, start);
+        March::new(model, &courses, settings, &steps).run(&mut geometry, &Free::stop, go_on)
+    } else {
+        // One more than needed, so that rounding of the tail does not matter.
+        let with_tail = steps.count + (settings.tail / steps.h).ceil() as usize + 1;
+        let plain = |law: &crate::assembly::ContactLaw| law.is_plain();
+        let slopes = !courses.iter().flat_map(|c| &c.vehicle.assembly().contacts).all(|contact| plain(&contact.law));
+        let mut geometry = Prescribed::new(ground, motion, with_tail, slopes);
+        March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), go_on)
     }
 }
 
-fn march(
-    model: &ModalBridge,
-    vehicle: &Vehicle,
-    settings: &Settings,
-    h: f64,
-    mut geometry: impl Geometry<f64>,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<History, Error> {
-    let path = settings.path(model, vehicle);
-    let rolling = settings.drive == Drive::ConstantTraction;
-    let body = Body::new(vehicle, settings.gravity);
-    let mut stepper = Stepper::new(&model.omega, &model.damping, body, rolling, h, settings.beta);
-    let mut state = stepper.start(settings.start(vehicle), settings.speed, &geometry);
+/// Refuses a road that ends before the vehicle has left the bridge.
+fn check_road(course: &Course<'_>, settings: &Settings, length: f64) -> Result<(), Error> {
+    if course.road.is_smooth() {
+        return Ok(());
+    }
+    let behind = if settings.ramp > 0.0 { 0.0 } else { course.wheelbase() };
+    let (from, to) = (-settings.approach - behind, length + course.wheelbase());
+    match course.direction {
+        Direction::Right => course.road.check_covers(from, to),
+        Direction::Left => course.road.check_covers(length - to, length - from),
+    }
+}
 
-    let static_loads = vehicle.static_loads(settings.gravity);
-    let axles = static_loads.len();
-    let length = model.shapes.mesh().length();
-    let mut history = History { axles, modes: model.omega.len(), step: h, static_loads, ..History::default() };
-    history.reserve(((path / settings.speed + settings.tail) / h) as usize + 16);
-    history.record(0.0, &state, &geometry);
-    let mut left_at = None;
-    for n in 1.. {
-        let time = n as f64 * h;
-        let front = geometry.position(0);
-        stepper.advance(&mut state, &mut geometry).map_err(|unsettled| {
-            let what = match unsettled {
+fn pavement<'a>(course: &Course<'a>, settings: &Settings, length: f64) -> Option<Pavement<'a>> {
+    let along = |way: f64| if course.direction == Direction::Right { way } else { length - way };
+    (!course.road.is_smooth()).then(|| Pavement {
+        road: course.road,
+        start: along(-settings.approach),
+        end: along(length + course.wheelbase()),
+        ramp: settings.ramp,
+        direction: course.direction.sign(),
+    })
+}
+
+/// A crossing being marched through time.
+struct March<'a> {
+    courses: &'a [Course<'a>],
+    settings: &'a Settings,
+    length: f64,
+    h: f64,
+    stepper: Stepper<f64>,
+    starter: Stepper<f64>,
+    history: History,
+    /// When each vehicle had left the bridge or stood for good.
+    ended: Vec<Option<f64>>,
+    /// When each vehicle began to brake.
+    braking_since: Vec<Option<f64>>,
+}
+
+impl<'a> March<'a> {
+    fn new(model: &'a ModalBridge, courses: &'a [Course<'a>], settings: &'a Settings, steps: &Steps) -> Self {
+        let moving: Vec<Moving<'_>> = courses
+            .iter()
+            .map(|course| Moving {
+                assembly: course.vehicle.assembly(),
+                propulsion: if course.rolls { Propulsion::Rolling } else { Propulsion::Prescribed },
+                direction: course.direction.sign(),
+            })
+            .collect();
+        let Settings { beta, gravity, lift_off, .. } = *settings;
+        let scheme = Scheme { h: steps.h, beta, gravity, lift_off };
+        let mut history = History {
+            axles: courses.last().map_or(0, |course| course.axles.end),
+            modes: model.omega.len(),
+            step: steps.h,
+            static_loads: courses.iter().flat_map(|course| course.vehicle.static_loads(gravity)).collect(),
+            ..History::default()
+        };
+        for course in courses {
+            let assembly = course.vehicle.assembly();
+            let (motion, first) = (history.motion_width(), history.frictions);
+            history.frictions += assembly.frictions.len();
+            history.vehicles.push(Columns {
+                axles: course.axles.clone(),
+                motion: motion..motion + 3 * (assembly.mass.nrows() + 1),
+                frictions: first..history.frictions,
+                direction: course.direction.sign(),
+                stopped: None,
+            });
+        }
+        history.reserve(steps.count + (settings.tail / steps.h) as usize + 16);
+        March {
+            courses,
+            settings,
+            length: model.shapes.mesh().length(),
+            h: steps.h,
+            stepper: Stepper::new(&model.omega, &model.damping, &moving, &scheme),
+            starter: Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h: 0.0, ..scheme }),
+            history,
+            ended: vec![None; courses.len()],
+            braking_since: vec![None; courses.len()],
+        }
+    }
+
+    fn run<G: Geometry<f64>>(
+        mut self,
+        geometry: &mut G,
+        stop: &dyn Fn(&mut G, usize),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<History, Error> {
+        let front = |geometry: &G| geometry.motion(0).x;
+        let unsettled = |what: Unsettled, time: f64, position: f64| {
+            let what = match what {
                 Unsettled::ContactForces => "contact forces",
                 Unsettled::AxlePositions => "axle positions",
             };
-            Error::NoConvergence { what, time, position: front }
-        })?;
-        let position = geometry.position(0);
-        let accelerations = state.modes.iter().fold(state.heave.a + state.pitch.a, |sum, c| sum + c.a);
-        if !accelerations.is_finite() || !position.is_finite() {
-            return Err(Error::NotFinite { time, position: front });
+            Error::NoConvergence { what, time, position }
+        };
+        let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
+        let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0.0, front(geometry)))?;
+        for (travel, course) in state.travel.iter_mut().zip(self.courses) {
+            *travel = course.centre(0.0);
         }
-        if rolling && state.travel.v <= 0.0 {
-            return Err(Error::Stopped { time, position });
-        }
-        history.record(time, &state, &geometry);
-
-        let last = geometry.position(axles - 1);
-        if left_at.is_none() && last >= length - 1e-12 * path {
-            let before = history.positions[history.positions.len() - axles - 1];
-            left_at = Some(time - h * ((last - length) / (last - before)).max(0.0));
-        }
-        if let Some(left) = left_at {
-            let end = left + settings.tail;
-            if time >= end - 1e-9 * h {
-                if time > end + 1e-9 * h {
-                    history.shorten_last(1.0 - (time - end) / h);
+        self.check_apart(0.0, geometry)?;
+        self.history.record(0.0, &state, geometry);
+        for n in 1.. {
+            let time = n as f64 * self.h;
+            let before = front(geometry);
+            self.put_brakes_on(time);
+            self.stepper.advance(&mut state, geometry).map_err(|e| unsettled(e, time, before))?;
+            for (travel, course) in state.travel.iter_mut().zip(self.courses).filter(|(_, course)| !course.rolls) {
+                *travel = course.centre(time);
+            }
+            let coordinates = state.modes.iter().chain(&state.coordinates);
+            let accelerations = coordinates.fold(state.travel.iter().map(|c| c.a).sum(), |sum: f64, c| sum + c.a);
+            if !accelerations.is_finite() || !front(geometry).is_finite() {
+                return Err(Error::NotFinite { time, position: before });
+            }
+            self.stand(time, &mut state.travel, geometry, stop)?;
+            self.check_apart(time, geometry)?;
+            self.history.record(time, &state, geometry);
+            self.note_ends(time);
+            if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
+                let end = end + self.settings.tail;
+                if time >= end - 1e-9 * self.h {
+                    if time > end + 1e-9 * self.h {
+                        self.history.shorten_last(1.0 - (time - end) / self.h);
+                    }
+                    return Ok(self.history);
                 }
-                return Ok(history);
+            }
+            if n > 2 * MAX_STEPS {
+                return Err(Error::Stopped { time, position: front(geometry) });
+            }
+            if n % POLL_EVERY == 0 && !go_on() {
+                return Err(Error::Interrupted);
             }
         }
-        if n > 2 * MAX_STEPS {
-            return Err(Error::Stopped { time, position });
-        }
-        if n % POLL_EVERY == 0 && !go_on() {
-            return Err(Error::Interrupted);
+        unreachable!("the loop over steps has no end")
+    }
+
+    /// How far an own axle has come at a recorded instant, from the end at which the vehicle enters [m].
+    fn way(&self, vehicle: usize, own: usize, row: usize) -> f64 {
+        let course = &self.courses[vehicle];
+        let x = self.history.positions[row * self.history.axles + course.axles.start + own];
+        if course.direction == Direction::Right { x } else { self.length - x }
+    }
+
+    /// When, before the end of the last recorded step, an own axle came to a way; the end of the step if only now.
+    fn passed(&self, vehicle: usize, own: usize, way: f64, time: f64) -> f64 {
+        let last = self.history.len() - 1;
+        let (before, now) = (self.way(vehicle, own, last.saturating_sub(1)), self.way(vehicle, own, last));
+        if now > before { time - self.h * ((now - way) / (now - before)).max(0.0) } else { time }
+    }
+
+    /// Sets the brakes for a step that ends at `time`.
+    fn put_brakes_on(&mut self, time: f64) {
+        for (v, course) in self.courses.iter().enumerate() {
+            let Some(braking) = course.braking else { continue };
+            let last = self.history.len() - 1;
+            if self.braking_since[v].is_none() && self.way(v, 0, last) >= braking.from {
+                self.braking_since[v] = Some(self.passed(v, 0, braking.from, time - self.h));
+            }
+            if let Some(since) = self.braking_since[v] {
+                let level = if braking.ramp > 0.0 { ((time - since) / braking.ramp).clamp(0.0, 1.0) } else { 1.0 };
+                let Braking { deceleration, adhesion, .. } = braking;
+                self.stepper.brake(v, Brakes { demand: deceleration, adhesion, level });
+            }
         }
     }
-    unreachable!("the loop over steps has no end")
+
+    /// Sees to freely rolling vehicles that have come to rest.
+    fn stand<G: Geometry<f64>>(
+        &mut self,
+        time: f64,
+        travel: &mut [Coordinate<f64>],
+        geometry: &mut G,
+        stop: &dyn Fn(&mut G, usize),
+    ) -> Result<(), Error> {
+        for (v, course) in self.courses.iter().enumerate() {
+            if !course.rolls || self.history.vehicles[v].stopped.is_some() || travel[v].v > 0.0 {
+                continue;
+            }
+            if self.braking_since[v].is_none() {
+                return Err(Error::Stopped { time, position: geometry.motion(course.axles.start).x });
+            }
+            travel[v] = Coordinate { x: travel[v].x, v: 0.0, a: 0.0 };
+            course.axles.clone().for_each(|axle| stop(geometry, axle));
+            let assembly = course.vehicle.assembly();
+            self.stepper.hold(v, Rig::new(assembly, true, Some(&assembly.standing_mass()), self.h, self.settings.beta));
+            self.history.vehicles[v].stopped = Some(time);
+        }
+        Ok(())
+    }
+
+    /// Notes which vehicles have left the bridge, or stand for good, by the end of the last recorded step.
+    fn note_ends(&mut self, time: f64) {
+        for (v, course) in self.courses.iter().enumerate() {
+            if self.ended[v].is_some() {
+                continue;
+            }
+            let own = course.behind.len() - 1;
+            let path = self.settings.approach + self.length + course.wheelbase();
+            if self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path {
+                self.ended[v] = Some(self.passed(v, own, self.length, time));
+            } else if let Some(stands) = course.motion.stands_from()
+                && time >= course.entry + stands - 1e-9 * self.h
+            {
+                self.history.vehicles[v].stopped = Some(course.entry + stands);
+                self.ended[v] = Some(course.entry + stands);
+            } else if let Some(stopped) = self.history.vehicles[v].stopped {
+                self.ended[v] = Some(stopped);
+            }
+        }
+    }
+
+    /// Refuses vehicles that overlap in one lane.
+    fn check_apart<G: Geometry<f64>>(&self, time: f64, geometry: &G) -> Result<(), Error> {
+        let stretch = |course: &Course<'_>| {
+            let ends = [geometry.motion(course.axles.start).x, geometry.motion(course.axles.end - 1).x];
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        for (j, second) in self.courses.iter().enumerate().skip(1) {
+            let b = stretch(second);
+            for (i, first) in self.courses[..j].iter().enumerate().filter(|(_, first)| first.lane == second.lane) {
+                let a = stretch(first);
+                if a[0] <= b[1] && b[0] <= a[1] {
+                    let value = format!("vehicles {i} and {j} in lane {}", second.lane);
+                    let allowed = format!(
+                        "they overlap at t = {time:.3} s, from {:.2} to {:.2} m and from {:.2} to {:.2} m; enter later, \
+                         change the speed or use another lane",
+                        a[0], a[1], b[0], b[1]
+                    );
+                    return Err(Error::input("vehicles", value, allowed));
+                }
+            }
+        }
+        Ok(())
+    }
 }

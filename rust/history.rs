@@ -1,19 +1,41 @@
 //! The states of a crossing, one row per instant, column by column.
 
+use std::ops::Range;
+
+use crate::newmark::Coordinate;
 use crate::step::{Geometry, State};
+
+/// A vehicle's columns in a [`History`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    /// Its axles among all, front first.
+    pub axles: Range<usize>,
+    /// Its numbers in a row of `motion`: value, velocity and acceleration of each of its coordinates, then of its travel.
+    pub motion: Range<usize>,
+    /// Its friction elements among all.
+    pub frictions: Range<usize>,
+    /// +1 for travel to the right, −1 to the left.
+    pub direction: f64,
+    /// When it came to rest, if it did [s].
+    pub stopped: Option<f64>,
+}
 
 /// States of a crossing, step after step. Arrays hold one row per instant.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
-    /// Number of axles.
+    /// Number of axles, of all vehicles.
     pub axles: usize,
     /// Number of included modes.
     pub modes: usize,
+    /// Number of friction elements beside those of massless axles.
+    pub frictions: usize,
+    /// The vehicles.
+    pub vehicles: Vec<Columns>,
     /// Time step [s]; the last row may end a shorter one.
     pub step: f64,
     /// Static axle loads [N].
     pub static_loads: Vec<f64>,
-    /// Time since the front axle was at the start of the approach [s].
+    /// Time since the start [s].
     pub time: Vec<f64>,
     /// Axle positions from the left end of the bridge [m], row by row.
     pub positions: Vec<f64>,
@@ -25,12 +47,27 @@ pub struct History {
     pub a_dot: Vec<f64>,
     /// Modal accelerations [m kg^½/s²], row by row.
     pub a_ddot: Vec<f64>,
-    /// Heave, pitch and travel of the body with their first and second derivatives, row by row (nine numbers).
-    pub body: Vec<f64>,
-    /// Suspension shortenings since the static state [m], row by row.
+    /// Coordinates and travel of each vehicle with their first and second derivatives, row by row.
+    pub motion: Vec<f64>,
+    /// Suspension shortenings of massless axles since the static state [m], row by row.
     pub shortenings: Vec<f64>,
-    /// Friction forces [N], row by row.
+    /// Friction forces in the suspensions of massless axles [N], row by row.
     pub friction: Vec<f64>,
+    /// Forces of the friction elements between parts that have mass [N], row by row.
+    pub rubbing: Vec<f64>,
+    /// Road elevations under the axles [m], row by row.
+    pub elevations: Vec<f64>,
+}
+
+/// A time during which a wheel was off the road.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiftOff {
+    /// The axle, among all.
+    pub axle: usize,
+    /// First instant without contact [s].
+    pub from: f64,
+    /// First instant with contact again, or the end [s].
+    pub to: f64,
 }
 
 impl History {
@@ -44,58 +81,99 @@ impl History {
         self.time.is_empty()
     }
 
-    /// Speed of the centre of mass at the end [m/s].
-    pub fn final_speed(&self) -> f64 {
-        self.body.last_chunk::<9>().map_or(0.0, |row| row[7])
+    /// Numbers in a row of `motion`.
+    pub fn motion_width(&self) -> usize {
+        self.vehicles.last().map_or(0, |v| v.motion.end)
+    }
+
+    /// Speed of a vehicle's centre of mass at the end [m/s].
+    pub fn final_speed(&self, vehicle: usize) -> f64 {
+        let row = self.motion.len() - self.motion_width();
+        self.motion[row + self.vehicles[vehicle].motion.end - 2]
+    }
+
+    /// The direction in which an axle travels.
+    pub fn direction(&self, axle: usize) -> f64 {
+        self.vehicles.iter().find(|v| v.axles.contains(&axle)).map_or(1.0, |v| v.direction)
+    }
+
+    /// Every time a wheel was off the road, axle by axle. At the instants the load of such a wheel is exactly zero.
+    pub fn lift_offs(&self) -> Vec<LiftOff> {
+        let mut all = Vec::new();
+        for axle in (0..self.axles).filter(|&axle| self.static_loads[axle] > 0.0) {
+            let mut from = None;
+            for (i, &time) in self.time.iter().enumerate() {
+                let off = self.loads[i * self.axles + axle] == 0.0;
+                match from {
+                    None if off => from = Some(time),
+                    Some(since) if !off => {
+                        all.push(LiftOff { axle, from: since, to: time });
+                        from = None;
+                    }
+                    _ => {}
+                }
+            }
+            if let (Some(from), Some(&to)) = (from, self.time.last()) {
+                all.push(LiftOff { axle, from, to });
+            }
+        }
+        all
     }
 
     pub(crate) fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
         self.time.push(time);
-        for (k, increment) in state.increments.iter().enumerate() {
-            self.positions.push(geometry.position(k));
-            self.loads.push(self.static_loads[k] + increment);
-            self.shortenings.push(state.shortenings[k]);
-            self.friction.push(state.friction[k]);
+        for k in 0..self.axles {
+            self.positions.push(geometry.motion(k).x);
+            self.loads.push(self.static_loads[k] + state.increments[k]);
+            self.shortenings.push(state.strokes[k].shortening);
+            self.friction.push(state.strokes[k].friction);
+            self.elevations.push(geometry.surface(k).elevation);
+        }
+        for stroke in &state.strokes[self.axles..] {
+            self.rubbing.push(stroke.friction);
         }
         for mode in &state.modes {
             self.a.push(mode.x);
             self.a_dot.push(mode.v);
             self.a_ddot.push(mode.a);
         }
-        for c in [state.heave, state.pitch, state.travel] {
-            self.body.push(c.x);
-            self.body.push(c.v);
-            self.body.push(c.a);
+        let mut first = 0;
+        for (vehicle, travel) in self.vehicles.iter().zip(&state.travel) {
+            let count = vehicle.motion.len() / 3 - 1;
+            for Coordinate { x, v, a } in state.coordinates[first..first + count].iter().chain([travel]) {
+                self.motion.extend([x, v, a]);
+            }
+            first += count;
         }
     }
 
-    /// Makes room for this many instants.
-    pub(crate) fn reserve(&mut self, instants: usize) {
-        self.time.reserve_exact(instants);
-        self.body.reserve_exact(9 * instants);
-        for column in [&mut self.positions, &mut self.loads, &mut self.shortenings, &mut self.friction] {
-            column.reserve_exact(self.axles * instants);
-        }
-        for column in [&mut self.a, &mut self.a_dot, &mut self.a_ddot] {
-            column.reserve_exact(self.modes * instants);
-        }
-    }
-
-    /// Cuts the last step short: its end becomes the state this fraction of the way through it.
-    pub(crate) fn shorten_last(&mut self, fraction: f64) {
-        let [m, k] = [self.modes, self.axles];
-        let columns: [(&mut Vec<f64>, usize); 9] = [
+    fn columns(&mut self) -> [(&mut Vec<f64>, usize); 11] {
+        let [m, k, f, w] = [self.modes, self.axles, self.frictions, self.motion_width()];
+        [
             (&mut self.time, 1),
             (&mut self.positions, k),
             (&mut self.loads, k),
             (&mut self.a, m),
             (&mut self.a_dot, m),
             (&mut self.a_ddot, m),
-            (&mut self.body, 9),
+            (&mut self.motion, w),
             (&mut self.shortenings, k),
             (&mut self.friction, k),
-        ];
-        for (column, width) in columns {
+            (&mut self.rubbing, f),
+            (&mut self.elevations, k),
+        ]
+    }
+
+    /// Makes room for this many instants.
+    pub(crate) fn reserve(&mut self, instants: usize) {
+        for (column, width) in self.columns() {
+            column.reserve_exact(width * instants);
+        }
+    }
+
+    /// Cuts the last step short: its end becomes the state this fraction of the way through it.
+    pub(crate) fn shorten_last(&mut self, fraction: f64) {
+        for (column, width) in self.columns() {
             let last = column.len() - width;
             let (before, after) = column.split_at_mut(last);
             for (b, a) in before[last - width..].iter().zip(after) {

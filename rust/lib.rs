@@ -17,11 +17,21 @@ pub mod modes;
 pub mod assembly;
 pub mod vehicle;
 
+pub mod road;
+
 pub mod lane;
 
+pub mod friction;
+
 pub mod contact;
-pub mod path;
+
+pub mod modal;
+pub mod newmark;
+pub mod rig;
 pub mod step;
+
+pub mod motion;
+pub mod path;
 
 pub mod crossing;
 pub mod history;

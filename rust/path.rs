@@ -59,6 +59,8 @@ pub struct Pavement<'a> {
     pub road: &'a Road,
     /// Where the vehicle's front starts, from the left end of the bridge [m].
     pub start: f64,
+    /// From where on it is level, the last axle having left [m].
+    pub end: f64,
     /// Way on which the unevenness fades in [m].
     pub ramp: f64,
     /// +1 for travel to the right, −1 to the left.
@@ -70,6 +72,9 @@ impl Pavement<'_> {
         let way = self.direction * (x - self.start);
         if self.road.is_smooth() || way <= 0.0 && self.ramp > 0.0 {
             return Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+        }
+        if self.direction * (x - self.end) > 0.0 {
+            return Surface { elevation: self.road.at(self.end).elevation, slope: 0.0, curvature: 0.0 };
         }
         let point = self.road.at(x);
         if way >= self.ramp {

@@ -121,7 +121,8 @@ impl Survey<'_> {
                 self.passing.state.set(self.history, i, fraction, self.rows);
                 let left = node.checked_sub(1).map(|panel| (panel, 1.0));
                 let right = (node < self.rows.mesh().panels()).then_some((node, 0.0));
-                for (side, row) in [(left, i - 1), (right, i)] {
+                let [before, after] = if self.passing.to_the_right[axle] { [left, right] } else { [right, left] };
+                for (side, row) in [(before, i - 1), (after, i)] {
                     self.passing.state.places[axle] = side;
                     if !self.passing.continuous(node) {
                         self.passing.state.jump(self.history, row, axle);
@@ -182,8 +183,10 @@ struct Passing<'a> {
     stops: Vec<(usize, f64, Option<usize>)>,
     sections: usize,
     ends: [End; 2],
-    /// For every axle the next stop ahead.
-    ahead: Vec<usize>,
+    /// Whether each axle travels to the right.
+    to_the_right: Vec<bool>,
+    /// For every axle the number of stops it has passed.
+    passed: Vec<usize>,
     state: Interpolated,
 }
 
@@ -206,7 +209,12 @@ impl<'a> Passing<'a> {
         let mut stops: Vec<_> = inner.map(|(section, &node)| (node, x[node], Some(section))).collect();
         stops.extend([(0, x[0], None), (last, x[last], None)]);
         stops.sort_unstable_by_key(|stop| stop.0);
-        let ahead = (0..history.axles).map(|k| stops.partition_point(|stop| stop.1 <= history.positions[k])).collect();
+        let to_the_right: Vec<bool> = (0..history.axles).map(|axle| history.direction(axle) > 0.0).collect();
+        let passed = to_the_right.iter().zip(&history.positions).map(|(&right, &x)| match right {
+            true => stops.partition_point(|stop| stop.1 <= x),
+            false => stops.len() - stops.partition_point(|stop| stop.1 < x),
+        });
+        let passed = passed.collect();
         let shear = |quantity: Quantity, node: usize, sign: f64| {
             let section = responses.sections().iter().position(|&s| s == node);
             section.map(|s| (responses.range(quantity).start + s, sign))
@@ -216,7 +224,7 @@ impl<'a> Passing<'a> {
             End { node: last, supported: responses.supported(last), shear: shear(Quantity::ShearLeft, last, 1.0) },
         ];
         let sections = responses.sections().len();
-        Passing { history, stops, sections, ends, ahead, state: Interpolated::default() }
+        Passing { history, stops, sections, ends, to_the_right, passed, state: Interpolated::default() }
     }
 
     /// Whether nothing jumps as an axle passes a node: all but the free ends, whose tip the wheel drops on or off.
@@ -234,8 +242,12 @@ impl<'a> Passing<'a> {
     fn next(&mut self, i: usize, axle: usize) -> Option<(usize, Option<usize>, f64)> {
         let axles = self.history.axles;
         let to = self.history.positions[i * axles + axle];
-        let &(node, x, section) = self.stops.get(self.ahead[axle]).filter(|stop| stop.1 <= to)?;
-        self.ahead[axle] += 1;
+        let (number, stops) = (self.passed[axle], &self.stops);
+        let &(node, x, section) = match self.to_the_right[axle] {
+            true => stops.get(number).filter(|stop| stop.1 <= to)?,
+            false => stops.get(stops.len().checked_sub(number + 1)?).filter(|stop| stop.1 >= to)?,
+        };
+        self.passed[axle] += 1;
         let from = self.history.positions[(i - 1) * axles + axle];
         Some((node, section, (x - from) / (to - from)))
     }

@@ -4,11 +4,14 @@ mod problems;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
+use nalgebra::DVector;
 use problems::{POUND, kishan_vehicle};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use spanwise::assembly::Friction;
-use spanwise::contact::{self, Contact};
+use spanwise::assembly::{ContactLaw, ContactPoint};
+use spanwise::contact::{Contact, Elements};
+use spanwise::friction::Stroke;
 use spanwise::vehicle::Axle;
 
 /// Bisection and closed form agree to this fraction of the static load.
@@ -34,7 +37,11 @@ struct Wheel {
 
 impl Wheel {
     fn contact(&self) -> Contact<f64> {
-        Contact::new(&self.axle, self.static_load)
+        contact(&self.axle, self.static_load)
+    }
+
+    fn stroke(&self) -> Stroke<f64> {
+        Stroke { shortening: self.shortening, rate: 0.0, friction: self.axle.friction.initial }
     }
 
     /// Friction if the suspension has length s under total shortening d.
@@ -56,6 +63,30 @@ impl Wheel {
     fn law(&self, d: f64) -> f64 {
         (self.axle.tyre_stiffness * (d - self.slip(d))).max(-self.static_load)
     }
+}
+
+/// The contact of an undamped massless axle, to which the length of a step makes no difference.
+fn contact(axle: &Axle, static_load: f64) -> Contact<f64> {
+    let point = ContactPoint {
+        row: DVector::zeros(0),
+        position: 0.0,
+        surge_row: DVector::zeros(0),
+        share: static_load,
+        law: ContactLaw::Series {
+            tyre_stiffness: axle.tyre_stiffness,
+            tyre_damping: 0.0,
+            suspension_stiffness: axle.suspension_stiffness,
+            suspension_damping: 0.0,
+            friction: axle.friction,
+        },
+    };
+    Contact::new(&point, 1.0, 1e-3, false)
+}
+
+fn solve(wheels: &[Wheel], u: &[f64], s: &[f64], p: &mut [f64], frozen: bool) -> bool {
+    let elements = Elements { contacts: wheels.iter().map(Wheel::contact).collect(), rubbing: Vec::new() };
+    let strokes: Vec<Stroke<f64>> = wheels.iter().map(Wheel::stroke).collect();
+    elements.solve(u, s, &strokes, p, frozen)
 }
 
 /// Root of a rising function.
@@ -156,12 +187,12 @@ proptest! {
     fn one_axle_is_its_scalar_law(wheel in wheel(), u in -0.15..0.1_f64, share in 0.0..5.0_f64) {
         // From rigid ground to a ground five times as soft as the tyre.
         let compliance = share / wheel.axle.tyre_stiffness;
-        let p = wheel.contact().solve(u, compliance, wheel.shortening);
+        let p = wheel.contact().solve(u, compliance, &wheel.stroke());
         let exact = bisect(-wheel.static_load, wheel.axle.tyre_stiffness, |p| p - wheel.law(u - compliance * p));
         prop_assert!((p - exact).abs() <= BISECTED * wheel.static_load, "{p} N, by bisection {exact} N");
 
         // The suspension it leaves behind: on the road it went where the law says, in the air it has let go.
-        let (s, friction) = wheel.contact().settle(p, wheel.shortening);
+        let Stroke { shortening: s, friction, .. } = wheel.contact().settle(p, &wheel.stroke());
         let limit = wheel.axle.friction.limit;
         prop_assert!(friction.abs() <= limit);
         let carried = wheel.axle.suspension_stiffness * s + friction - wheel.axle.friction.initial;
@@ -176,10 +207,8 @@ proptest! {
 
     #[test]
     fn several_axles_are_the_one_consistent_combination((wheels, u, s) in train()) {
-        let contacts: Vec<Contact<f64>> = wheels.iter().map(Wheel::contact).collect();
-        let shortenings: Vec<f64> = wheels.iter().map(|w| w.shortening).collect();
         let mut p = vec![0.0; wheels.len()];
-        prop_assert!(contact::solve(&contacts, &u, &s, &shortenings, &mut p, false), "does not settle");
+        prop_assert!(solve(&wheels, &u, &s, &mut p, false), "does not settle");
 
         let weight: f64 = wheels.iter().map(|w| w.static_load).sum();
         let fitting: Vec<Vec<f64>> =
@@ -196,18 +225,16 @@ proptest! {
     /// Where the solve starts makes no difference, and a frozen sample stays as it is.
     #[test]
     fn the_solution_is_unique((wheels, u, s) in train(), start in prop::collection::vec(-2e5..5e5_f64, 4)) {
-        let contacts: Vec<Contact<f64>> = wheels.iter().map(Wheel::contact).collect();
-        let shortenings: Vec<f64> = wheels.iter().map(|w| w.shortening).collect();
         let weight: f64 = wheels.iter().map(|w| w.static_load).sum();
         let mut p = vec![0.0; wheels.len()];
         let mut q = start[..wheels.len()].to_vec();
         let mut frozen = q.clone();
-        prop_assert!(contact::solve(&contacts, &u, &s, &shortenings, &mut p, false));
-        prop_assert!(contact::solve(&contacts, &u, &s, &shortenings, &mut q, false));
+        prop_assert!(solve(&wheels, &u, &s, &mut p, false));
+        prop_assert!(solve(&wheels, &u, &s, &mut q, false));
         for (p, q) in p.iter().zip(&q) {
             prop_assert!((p - q).abs() <= SWEPT * weight, "{p} N and {q} N");
         }
-        contact::solve(&contacts, &u, &s, &shortenings, &mut frozen, true);
+        solve(&wheels, &u, &s, &mut frozen, true);
         prop_assert_eq!(&frozen[..], &start[..wheels.len()]);
     }
 }
@@ -234,7 +261,7 @@ fn every_state_occurs() {
 #[test]
 fn the_axle_of_the_paper() {
     let axle = kishan_vehicle().axles()[0];
-    let contact = Contact::<f64>::new(&axle, 32_040.0 * POUND);
+    let contact = contact(&axle, 32_040.0 * POUND);
     let foot = problems::FOOT;
     let series = 480.0 * 270.0 / (480.0 + 270.0);
     for (feet, kilopounds) in [
@@ -245,7 +272,7 @@ fn the_axle_of_the_paper() {
         (-0.05, -4.8 - 0.04 * series),
         (-1.0, -32.04),
     ] {
-        let p = contact.solve(feet * foot, 0.0, 0.0);
+        let p = contact.solve(feet * foot, 0.0, &contact.at_rest());
         assert!((p - kilopounds * 1e3 * POUND).abs() <= BISECTED * axle.friction.limit, "{feet} ft: {p} N");
     }
 }

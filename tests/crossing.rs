@@ -22,14 +22,14 @@ const ROUNDING: f64 = 1e-9;
 /// Modal coordinates, heave and pitch at one instant.
 fn state(history: &History, row: usize) -> Vec<f64> {
     let mut state = history.a[row * history.modes..][..history.modes].to_vec();
-    state.extend([history.body[row * 9], history.body[row * 9 + 3]]);
+    state.extend([history.motion[row * 9], history.motion[row * 9 + 3]]);
     state
 }
 
 /// Orders between neighbouring halvings of the step, by Richardson's differences of the state at `feet` along the path.
 fn orders_of_state(vehicle: &Vehicle, drive: Drive, beta: f64, feet: usize) -> Vec<f64> {
     let runs: Vec<Run> =
-        (4..=7).map(|halvings| kishan_in_steps(vehicle, drive, beta, KISHAN_PATH << halvings, &[0.0])).collect();
+        (4..=7).map(|halvings| kishan_in_steps(vehicle, drive.clone(), beta, KISHAN_PATH << halvings, &[0.0])).collect();
     let states = runs.iter().map(|run| {
         let history = &run.outcome.history;
         let row = (history.len() - 1) / KISHAN_PATH * feet;
@@ -90,7 +90,7 @@ fn extremes_converge_at_second_order() {
         for vehicle in linear_vehicles() {
             for quantity in [Quantity::Deflection, Quantity::Moment, Quantity::ShearLeft] {
                 let extremes = |count: usize| -> Vec<f64> {
-                    let run = kishan_in_steps(&vehicle, drive, 1.0 / 6.0, count, &[]);
+                    let run = kishan_in_steps(&vehicle, drive.clone(), 1.0 / 6.0, count, &[]);
                     let dynamic = run.analysis.envelope_of(&run.outcome, quantity).dynamic;
                     dynamic.max.iter().chain(&dynamic.min).map(|e| e.value).collect()
                 };
@@ -158,7 +158,7 @@ fn slow_crossings_are_static() {
 fn constant_traction_may_not_carry_the_vehicle_out_of_a_hollow() {
     let bridge = Bridge::new(9.0, vec![clamped(9.0)], &[1.9e9], &[6e3], &Stations::PerSpan(vec![5]), &[]).unwrap();
     let at = |speed: f64, drive: Drive| {
-        let settings = Settings { drive, step: Some(2e-3), ..Settings::at_speed(speed) };
+        let settings = Settings { drive: drive.clone(), step: Some(2e-3), ..Settings::at_speed(speed) };
         run(&bridge, &kishan_vehicle(), &settings, 2, &undamped(), ForceSummation, &[0.0]).map(|_| ())
     };
     match at(0.2, Drive::ConstantTraction) {
@@ -177,7 +177,7 @@ fn the_tail_adds_to_the_extremes() {
     let bridge = kishan_bridge();
     for drive in [Drive::ConstantSpeed, Drive::ConstantTraction] {
         let with = |tail: f64| {
-            let settings = Settings { drive, tail, step: Some(1e-3), ..Settings::at_speed(40.0) };
+            let settings = Settings { drive: drive.clone(), tail, step: Some(1e-3), ..Settings::at_speed(40.0) };
             run(&bridge, &kishan_vehicle(), &settings, 3, &undamped(), ForceSummation, &[]).unwrap()
         };
         let [none, long] = [0.0, 1.2345].map(with);
@@ -205,7 +205,7 @@ fn the_approach_is_at_rest() {
     for drive in [Drive::ConstantSpeed, Drive::ConstantTraction] {
         let after = |steps: usize| {
             let approach = steps as f64 * step * 75.0 * FOOT;
-            let settings = Settings { drive, approach, step: Some(step), ..Settings::at_speed(75.0 * FOOT) };
+            let settings = Settings { drive: drive.clone(), approach, step: Some(step), ..Settings::at_speed(75.0 * FOOT) };
             run(&bridge, &kishan_vehicle(), &settings, 3, &undamped(), ForceSummation, &[0.0]).unwrap()
         };
         let [none, some] = [0, 500].map(after);
@@ -228,18 +228,18 @@ fn the_approach_is_at_rest() {
 fn linear_in_gravity() {
     let bridge = kishan_bridge();
     let responses = |gravity: f64, friction: f64, drive: Drive| {
-        let settings = Settings { drive, gravity, step: Some(2e-3), ..Settings::at_speed(20.0) };
+        let settings = Settings { drive: drive.clone(), gravity, step: Some(2e-3), ..Settings::at_speed(20.0) };
         let vehicle = kishan_vehicle_with_friction(friction);
         run(&bridge, &vehicle, &settings, 3, &undamped(), ForceSummation, &[]).unwrap().responded[0].clone()
     };
     let apart = |friction: [f64; 2], drive: Drive| {
-        let once: Vec<f64> = responses(4.0, friction[0], drive).iter().map(|v| 2.5 * v).collect();
+        let once: Vec<f64> = responses(4.0, friction[0], drive.clone()).iter().map(|v| 2.5 * v).collect();
         largest_difference(&once, &responses(10.0, friction[1], drive)) / largest_magnitude(&once)
     };
     let speed = Drive::ConstantSpeed;
     let limit = 300.0 * POUND;
     for friction in [[0.0; 2], [f64::INFINITY; 2], [limit, 2.5 * limit]] {
-        let apart = apart(friction, speed);
+        let apart = apart(friction, speed.clone());
         assert!(apart <= ROUNDING, "friction {friction:?}: {apart:e}");
     }
     // What is not linear: friction that does not grow with the weight, and a speed that follows the slope.

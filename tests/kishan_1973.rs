@@ -156,7 +156,7 @@ fn all_modes_leave_nothing_to_force_summation() {
 #[test]
 fn speed_fluctuates_slightly() {
     let run = example(3, ForceSummation);
-    let speeds: Vec<f64> = run.outcome.history.body.chunks_exact(9).map(|row| row[7]).collect();
+    let speeds: Vec<f64> = run.outcome.history.motion.chunks_exact(9).map(|row| row[7]).collect();
     let apart = speeds.iter().map(|v| (v / speeds[0] - 1.0).abs()).fold(0.0, f64::max);
     println!("speed changes by {apart:.2e} of itself");
     assert!(apart > 1e-5 && apart < 1e-2, "speed changes by {apart:.2e} of itself");

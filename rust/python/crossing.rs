@@ -75,7 +75,7 @@ impl Crossing {
             "coordinates" => (&history.a, history.modes),
             "velocities" => (&history.a_dot, history.modes),
             "accelerations" => (&history.a_ddot, history.modes),
-            "body" => (&history.body, 9),
+            "motion" => (&history.motion, history.motion_width()),
             "suspension_shortenings" => (&history.shortenings, history.axles),
             "friction" => (&history.friction, history.axles),
             _ => return Err(Error::input("states", format!("\"{name}\""), "no such state").into()),
@@ -110,7 +110,7 @@ impl Crossing {
 
     #[getter]
     fn final_speed(&self) -> f64 {
-        self.outcome.history.final_speed()
+        self.outcome.history.final_speed(0)
     }
 
     /// Extremes of a quantity: columns value, time, front-axle position and partner for each of the dynamic largest,
@@ -210,7 +210,7 @@ pub fn cross<'py>(
             Damping::Viscous(Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[[i, j]]))
         }
     };
-    let settings = Settings { speed, drive, beta, step, approach, tail, gravity };
+    let settings = Settings { drive, beta, step, approach, tail, gravity, ..Settings::at_speed(speed) };
     let (analysis, outcome) = interruptible(py, |go_on| {
         let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery }, go_on)?;
         let outcome = analysis.cross(&vehicle.0, &settings, go_on)?;

@@ -303,7 +303,7 @@ impl Run {
         let strain: Vec<f64> =
             self.rows().map(|row| row.a.iter().zip(omega).map(|(a, w)| 0.5 * (a * w).powi(2)).sum()).collect();
         let total = self.rows().enumerate().map(|(i, row)| {
-            let body = &history.body[9 * i..][..9];
+            let body = &history.motion[9 * i..][..9];
             let moving = 0.5 * row.a_dot.iter().map(|v| v * v).sum::<f64>()
                 + 0.5 * vehicle.mass() * (body[1].powi(2) + body[7].powi(2))
                 + 0.5 * vehicle.pitch_inertia() * body[4].powi(2);
@@ -326,6 +326,6 @@ pub const KISHAN_PATH: usize = 134;
 /// The run of [KTN73] §4 in three modes and `count` steps.
 pub fn kishan_in_steps(vehicle: &Vehicle, drive: Drive, beta: f64, count: usize, sections: &[f64]) -> Run {
     let step = KISHAN_PATH as f64 / 75.0 / count as f64;
-    let settings = Settings { drive, beta, step: Some(step), ..kishan_settings() };
+    let settings = Settings { drive: drive.clone(), beta, step: Some(step), ..kishan_settings() };
     run(&kishan_bridge(), vehicle, &settings, 3, &undamped(), Recovery::ForceSummation, sections).unwrap()
 }
