@@ -1,7 +1,8 @@
 //! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
 
 use crate::bridge::Bridge;
-use crate::crossing::{Damping, ModalBridge, Passage, Settings, cross_all};
+use crate::course::Passage;
+use crate::crossing::{Damping, ModalBridge, Settings, cross_all};
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;

@@ -83,13 +83,7 @@ impl<L: Lane> Contact<L> {
             ContactLaw::Force => (1.0, 0.0, 0.0, 0.0),
         };
         let suspension = match point.law {
-            ContactLaw::Series {
-                tyre_stiffness,
-                tyre_damping,
-                suspension_stiffness,
-                suspension_damping,
-                friction,
-            } => {
+            ContactLaw::Series { tyre_stiffness, tyre_damping, suspension_stiffness, suspension_damping, friction } => {
                 let trapezoidal = friction.limit == 0.0;
                 let damped = tyre_damping != 0.0 || suspension_damping != 0.0;
                 let per_step = match (damped, trapezoidal) {

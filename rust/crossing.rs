@@ -1,20 +1,19 @@
 //! One crossing: from the front axle at the start of the approach until the last axle has left and the tail is over.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
+use crate::course::{Braking, Course, Direction, Drive, Passage};
 use crate::error::{Error, finite, not_negative, positive};
 use crate::flexibility::Flexibility;
 use crate::history::{Columns, History};
 use crate::line::Line;
 use crate::modal::ModalDamping;
 use crate::modes::Modes;
-use crate::motion::Motion;
 use crate::newmark::Coordinate;
-use crate::path::{Free, Ground, ModeShapes, Pavement, Prescribed};
+use crate::path::{Free, Ground, ModeShapes, Prescribed};
 use crate::rig::Rig;
 use crate::road::Road;
 use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, Stepper, Unsettled};
@@ -38,84 +37,6 @@ const POLL_EVERY: usize = 1024;
 /// Way in front of an axle that the road's unevenness needs at most in one step unless the user gives a step [m]: a fifth
 /// of the shortest wave that is usual.
 const WAY_PER_STEP: f64 = 0.05;
-
-/// How a vehicle moves along the bridge.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Drive {
-    /// At the given speed throughout.
-    ConstantSpeed,
-    /// Traction and resistance in balance on the level: the speed follows the slope under the axles (KTN73 §4).
-    ConstantTraction,
-    /// With constant acceleration [m/s²] from the start of the approach; one that slows down stands in the end.
-    Acceleration(f64),
-    /// Through given speeds [m/s] at given times [s] after the vehicle's entry, linear between them.
-    Speeds {
-        /// Times [s], ascending.
-        times: Vec<f64>,
-        /// Speeds [m/s].
-        speeds: Vec<f64>,
-    },
-    /// As at constant traction, and from a point on with the brakes on.
-    Braking(Braking),
-}
-
-/// How a vehicle brakes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Braking {
-    /// Deceleration asked for, shared out among the wheels like their static loads [m/s²].
-    pub deceleration: f64,
-    /// Where the front axle is when braking begins, from the end of the bridge at which it enters [m].
-    pub from: f64,
-    /// Time in which the brake forces grow [s].
-    pub ramp: f64,
-    /// Coefficient of friction between tyre and road: bound of each brake force relative to the axle load.
-    pub adhesion: f64,
-}
-
-/// The direction of travel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// From the left end to the right.
-    Right,
-    /// From the right end to the left.
-    Left,
-}
-
-impl Direction {
-    /// +1 to the right, −1 to the left.
-    pub fn sign(self) -> f64 {
-        match self {
-            Direction::Right => 1.0,
-            Direction::Left => -1.0,
-        }
-    }
-}
-
-/// A vehicle among others.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Passage {
-    /// The vehicle.
-    pub vehicle: Vehicle,
-    /// Speed at the start [m/s], if not that of the [`Settings`].
-    pub speed: Option<f64>,
-    /// How it moves, if not as the [`Settings`] say.
-    pub drive: Option<Drive>,
-    /// Where it goes.
-    pub direction: Direction,
-    /// When its front axle is at the start of the approach [s].
-    pub entry: f64,
-    /// Vehicles of the same lane must not overlap.
-    pub lane: i64,
-    /// The road under it, if not that of the [`Settings`].
-    pub road: Option<Arc<Road>>,
-}
-
-impl Passage {
-    /// Of a vehicle that enters at the left end at once.
-    pub fn of(vehicle: Vehicle) -> Self {
-        Passage { vehicle, speed: None, drive: None, direction: Direction::Right, entry: 0.0, lane: 0, road: None }
-    }
-}
 
 /// Viscous damping of the bridge.
 #[derive(Debug, Clone, PartialEq)]
@@ -285,101 +206,6 @@ impl Settings {
     }
 }
 
-/// A vehicle on its way: what a passage and the settings come to.
-struct Course<'a> {
-    vehicle: &'a Vehicle,
-    direction: Direction,
-    lane: i64,
-    road: &'a Road,
-    /// Its axles among all.
-    axles: Range<usize>,
-    /// Distance of each behind the first [m].
-    behind: Vec<f64>,
-    /// The front axle, from the end of the bridge at which it enters, in time since its entry; if it rolls freely, as it
-    /// would at the speed it starts with.
-    motion: Motion,
-    entry: f64,
-    speed: f64,
-    rolls: bool,
-    braking: Option<Braking>,
-}
-
-impl<'a> Course<'a> {
-    fn new(passage: &'a Passage, settings: &'a Settings, key: &str, first: usize) -> Result<Self, Error> {
-        let speed = passage.speed.unwrap_or(settings.speed);
-        let drive = passage.drive.as_ref().unwrap_or(&settings.drive);
-        not_negative(format!("{key}entry"), passage.entry)?;
-        let start = -settings.approach;
-        let motion = match drive {
-            Drive::Speeds { times, speeds } => Motion::through(start, times, speeds)?,
-            Drive::Acceleration(a) => {
-                Motion::accelerated(start, positive(format!("{key}speed"), speed)?, *a)?
-            }
-            _ => Motion::steady(start, positive(format!("{key}speed"), speed)?),
-        };
-        let rolls = matches!(drive, Drive::ConstantTraction | Drive::Braking(_));
-        let assembly = passage.vehicle.assembly();
-        if rolls && assembly.mass.nrows() == 0 {
-            let allowed = "forces and masses without a vehicle move as prescribed: use constant-speed, an acceleration \
-                           or a speed history";
-            let name = if matches!(drive, Drive::Braking(_)) { "braking" } else { "constant-traction" };
-            return Err(Error::input(format!("{key}drive"), format!("\"{name}\""), allowed));
-        }
-        let braking = match drive {
-            Drive::Braking(braking) => {
-                positive("braking deceleration", braking.deceleration)?;
-                finite("braking start", braking.from)?;
-                not_negative("braking ramp", braking.ramp)?;
-                positive("braking adhesion", braking.adhesion)?;
-                Some(*braking)
-            }
-            _ => None,
-        };
-        let front = assembly.contacts[0].position;
-        let behind: Vec<f64> = assembly.contacts.iter().map(|c| front - c.position).collect();
-        Ok(Course {
-            vehicle: &passage.vehicle,
-            direction: passage.direction,
-            lane: passage.lane,
-            road: passage.road.as_deref().unwrap_or(&settings.road),
-            axles: first..first + behind.len(),
-            behind,
-            speed: motion.at(0.0).v,
-            motion,
-            entry: passage.entry,
-            rolls,
-            braking,
-        })
-    }
-
-    /// From the first to the last axle [m].
-    fn wheelbase(&self) -> f64 {
-        self.behind[self.behind.len() - 1]
-    }
-
-    /// An own axle at time t, along the bridge.
-    fn axle(&self, own: usize, t: f64, length: f64) -> Coordinate<f64> {
-        let Coordinate { x, v, a } = self.motion.at(t - self.entry);
-        let x = x - self.behind[own];
-        match self.direction {
-            Direction::Right => Coordinate { x, v, a },
-            Direction::Left => Coordinate { x: length - x, v: -v, a: -a },
-        }
-    }
-
-    /// The centre of mass at time t, from the end at which the vehicle enters.
-    fn centre(&self, t: f64) -> Coordinate<f64> {
-        let Coordinate { x, v, a } = self.motion.at(t - self.entry);
-        Coordinate { x: x - self.vehicle.assembly().contacts[0].position, v, a }
-    }
-
-    /// When it has left the bridge, or stands for good; of one that rolls, an estimate.
-    fn end(&self, length: f64) -> f64 {
-        let exit = self.motion.time_at(length + self.wheelbase());
-        self.entry + exit.or(self.motion.stands_from()).unwrap_or(f64::INFINITY)
-    }
-}
-
 /// Steps of a crossing.
 struct Steps {
     /// Length [s].
@@ -482,13 +308,13 @@ pub fn cross_all(
     for (i, passage) in passages.iter().enumerate() {
         let key = if passages.len() == 1 { String::new() } else { format!("vehicles[{i}].") };
         let course = Course::new(passage, settings, &key, courses.last().map_or(0, |c| c.axles.end))?;
-        check_road(&course, settings, length)?;
+        course.check_road(settings, length)?;
         courses.push(course);
     }
     let steps = Steps::plan(model, &courses, settings)?;
     let ground = Ground {
         shapes: &model.shapes,
-        pavements: courses.iter().map(|course| pavement(course, settings, length)).collect(),
+        pavements: courses.iter().map(|course| course.pavement(settings, length)).collect(),
         vehicle: courses.iter().enumerate().flat_map(|(v, c)| vec![v; c.behind.len()]).collect(),
     };
     let owner = ground.vehicle.clone();
@@ -511,30 +337,6 @@ pub fn cross_all(
         let mut geometry = Prescribed::new(ground, motion, with_tail, slopes);
         March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), go_on)
     }
-}
-
-/// Refuses a road that ends before the vehicle has left the bridge.
-fn check_road(course: &Course<'_>, settings: &Settings, length: f64) -> Result<(), Error> {
-    if course.road.is_smooth() {
-        return Ok(());
-    }
-    let behind = if settings.ramp > 0.0 { 0.0 } else { course.wheelbase() };
-    let (from, to) = (-settings.approach - behind, length + course.wheelbase());
-    match course.direction {
-        Direction::Right => course.road.check_covers(from, to),
-        Direction::Left => course.road.check_covers(length - to, length - from),
-    }
-}
-
-fn pavement<'a>(course: &Course<'a>, settings: &Settings, length: f64) -> Option<Pavement<'a>> {
-    let along = |way: f64| if course.direction == Direction::Right { way } else { length - way };
-    (!course.road.is_smooth()).then(|| Pavement {
-        road: course.road,
-        start: along(-settings.approach),
-        end: along(length + course.wheelbase()),
-        ramp: settings.ramp,
-        direction: course.direction.sign(),
-    })
 }
 
 /// A crossing being marched through time.

@@ -33,6 +33,7 @@ pub mod step;
 pub mod motion;
 pub mod path;
 
+pub mod course;
 pub mod crossing;
 pub mod history;
 

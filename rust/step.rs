@@ -126,7 +126,11 @@ struct Unit<L> {
 impl<L: Lane> Unit<L> {
     /// Global number of an element of this vehicle.
     fn element(&self, own: usize) -> usize {
-        if own < self.contacts.len() { self.contacts.start + own } else { self.rubbing.start + own - self.contacts.len() }
+        if own < self.contacts.len() {
+            self.contacts.start + own
+        } else {
+            self.rubbing.start + own - self.contacts.len()
+        }
     }
 }
 
@@ -352,12 +356,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
-    fn react(
-        &mut self,
-        state: &mut State<L>,
-        geometry: &impl Geometry<L>,
-        frozen: L::Mask,
-    ) -> Result<(), Unsettled> {
+    fn react(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>, frozen: L::Mask) -> Result<(), Unsettled> {
         self.couple(geometry);
         if !self.elements.solve(&self.offset, &self.compliance, &state.strokes, &mut state.increments, frozen) {
             return Err(Unsettled::ContactForces);
@@ -387,7 +386,8 @@ impl<L: Lane> Stepper<L> {
         }
         self.loaded.copy_from_slice(&self.free);
         let receptances = self.receptance.chunks_exact_mut(modes);
-        for ((shapes, receptance), contact) in self.shapes.chunks_exact(modes).zip(receptances).zip(&self.elements.contacts)
+        for ((shapes, receptance), contact) in
+            self.shapes.chunks_exact(modes).zip(receptances).zip(&self.elements.contacts)
         {
             self.modal.apply(shapes, receptance);
             for (loaded, r) in self.loaded.iter_mut().zip(receptance.iter()) {
@@ -409,7 +409,8 @@ impl<L: Lane> Stepper<L> {
             } else {
                 let Coordinate { v, a, .. } = geometry.motion(k);
                 let v2 = v * v;
-                offset = offset + weights.rate * v * road.slope
+                offset = offset
+                    + weights.rate * v * road.slope
                     + weights.acceleration * (v2 * road.curvature + a * road.slope);
                 for (m, ((sense, &shape), q)) in senses.iter_mut().zip(shapes).zip(&self.predicted).enumerate() {
                     let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
@@ -420,8 +421,8 @@ impl<L: Lane> Stepper<L> {
                     let value = shape * q.x;
                     let rate = shape * q.v + v * slope * q.x;
                     let acceleration = L::splat(2.0) * v * slope * q.v + convected * q.x;
-                    offset = offset
-                        - (weights.value * value + weights.rate * rate + weights.acceleration * acceleration);
+                    offset =
+                        offset - (weights.value * value + weights.rate * rate + weights.acceleration * acceleration);
                 }
             }
             self.offset[k] = offset - dot(senses, &self.loaded);

@@ -5,7 +5,8 @@ mod problems;
 use faer::Mat;
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
-use spanwise::crossing::{Damping, Drive, Settings};
+use spanwise::course::Drive;
+use spanwise::crossing::{Damping, Settings};
 use spanwise::error::Error;
 use spanwise::history::History;
 use spanwise::influence::Quantity;
@@ -28,8 +29,9 @@ fn state(history: &History, row: usize) -> Vec<f64> {
 
 /// Orders between neighbouring halvings of the step, by Richardson's differences of the state at `feet` along the path.
 fn orders_of_state(vehicle: &Vehicle, drive: Drive, beta: f64, feet: usize) -> Vec<f64> {
-    let runs: Vec<Run> =
-        (4..=7).map(|halvings| kishan_in_steps(vehicle, drive.clone(), beta, KISHAN_PATH << halvings, &[0.0])).collect();
+    let runs: Vec<Run> = (4..=7)
+        .map(|halvings| kishan_in_steps(vehicle, drive.clone(), beta, KISHAN_PATH << halvings, &[0.0]))
+        .collect();
     let states = runs.iter().map(|run| {
         let history = &run.outcome.history;
         let row = (history.len() - 1) / KISHAN_PATH * feet;
@@ -205,7 +207,8 @@ fn the_approach_is_at_rest() {
     for drive in [Drive::ConstantSpeed, Drive::ConstantTraction] {
         let after = |steps: usize| {
             let approach = steps as f64 * step * 75.0 * FOOT;
-            let settings = Settings { drive: drive.clone(), approach, step: Some(step), ..Settings::at_speed(75.0 * FOOT) };
+            let settings =
+                Settings { drive: drive.clone(), approach, step: Some(step), ..Settings::at_speed(75.0 * FOOT) };
             run(&bridge, &kishan_vehicle(), &settings, 3, &undamped(), ForceSummation, &[0.0]).unwrap()
         };
         let [none, some] = [0, 500].map(after);
