@@ -124,4 +124,4 @@ def _positions(
     for k, gap in enumerate(gaps):
         if not 0.0 < gap < float("inf"):
             raise ValueError(f"spacings[{k}] = {gap:g} m: must be finite and greater than 0")
-    return [-x for x in accumulate(gaps, initial=0.0)]
+    return [0.0 - x for x in accumulate(gaps, initial=0.0)]
