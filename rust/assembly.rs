@@ -38,6 +38,8 @@ pub struct Assembly {
     pub surge_mass: DMatrix<f64>,
     /// Heave and pitch of every body, as rows that give them from q.
     pub bodies: Vec<[DVector<f64>; 2]>,
+    /// Distance of each body's centre of mass ahead of that of the whole vehicle in the static state [m].
+    pub body_positions: Vec<f64>,
     /// Displacement of the unsprung mass above each contact, where there is one, as a row.
     pub hops: Vec<Option<DVector<f64>>>,
 }
@@ -227,6 +229,7 @@ impl Assembly {
             frictions: Vec::new(),
             total_mass: 0.0,
             bodies: Vec::new(),
+            body_positions: positions(bodies),
             hops: Vec::new(),
         };
         let mut weight = DVector::zeros(n);
@@ -283,6 +286,7 @@ impl Assembly {
             frictions: Vec::new(),
             total_mass: masses.sum(),
             bodies: Vec::new(),
+            body_positions: Vec::new(),
             hops: vec![None; laws.len()],
             contacts: laws
                 .into_iter()
@@ -329,6 +333,9 @@ impl Assembly {
     pub fn vibrations(&self, suspension: Suspension) -> (Vec<f64>, DMatrix<f64>) {
         let n = self.coordinates.len();
         let none = (vec![f64::NAN; n], DMatrix::zeros(n, n));
+        if n == 0 {
+            return none; // a train has nothing that vibrates
+        }
         let Some(root) = Cholesky::new(self.mass.clone()) else { return none };
         let inverse = root.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or_else(|| DMatrix::zeros(n, n));
         let scaled = &inverse * self.grounded_stiffness(suspension) * inverse.transpose();
@@ -363,6 +370,9 @@ impl Assembly {
         for contact in &mut self.contacts {
             contact.surge_row -= &surge;
             contact.position -= position;
+        }
+        for body in &mut self.body_positions {
+            *body -= position;
         }
     }
 
@@ -484,7 +494,7 @@ fn coordinates(
     };
     let (mut heaves, mut pitches) = (Vec::new(), Vec::new());
     for (b, body) in bodies.iter().enumerate() {
-        let hinged = body.couplings.iter().any(|c| matches!(c, Coupling::Hinge { .. }));
+        let hinged = body.couplings.iter().any(Coupling::is_hinge);
         heaves.push(name(!hinged, format!("body {} heave", b + 1)));
         let mut points = body.axles.iter().map(|axle| axle.position).chain(body.couplings.iter().map(|c| c.ends().2));
         let mut others = bodies.iter().flat_map(|other| &other.couplings).map(Coupling::ends);

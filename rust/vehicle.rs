@@ -93,6 +93,11 @@ impl Coupling {
         let (Coupling::Hinge { to, at, own, .. } | Coupling::Spring { to, at, own, .. }) = *self;
         (to, at, own)
     }
+
+    /// Whether it is a hinge.
+    pub fn is_hinge(&self) -> bool {
+        matches!(self, Coupling::Hinge { .. })
+    }
 }
 
 /// A rigid body.
@@ -214,6 +219,11 @@ impl Vehicle {
         self.assembly.contacts.iter().map(|contact| contact.position).collect()
     }
 
+    /// Body and number in it of every axle, front first.
+    pub fn axle_order(&self) -> Vec<(usize, usize)> {
+        front_first(&self.bodies)
+    }
+
     /// Distance from the first to the last axle [m].
     pub fn wheelbase(&self) -> f64 {
         let contacts = &self.assembly.contacts;
@@ -300,20 +310,19 @@ fn check_behind(key: String, position: f64, before: Option<f64>) -> Result<(), E
 
 fn check_couplings(bodies: &[Body], b: usize) -> Result<(), Error> {
     let couplings = &bodies[b].couplings;
-    let here = format!("{}couplings", prefix(bodies, b));
     if b > 0 && couplings.is_empty() {
-        let allowed = "every body but the first must be coupled to an earlier one";
-        return Err(Error::input(here, "[]", allowed));
+        let allowed = "every body but the first needs a hinge or springs to an earlier one";
+        return Err(Error::input(format!("bodies[{b}]"), "uncoupled", allowed));
     }
-    let mut hinges = 0;
     for (k, coupling) in couplings.iter().enumerate() {
-        let key = |name: &str| format!("{here}[{k}].{name}");
+        let here = coupling_key(bodies, b, k);
+        let key = |name: &str| format!("{here}.{name}");
         let (to, at, own) = coupling.ends();
         if to >= b {
             let allowed = match b {
-                0 => "the first body has no earlier one to be coupled to; couple the others to it".to_string(),
-                1 => "must be an earlier body, 0".to_string(),
-                _ => format!("must be an earlier body, 0 to {}", b - 1),
+                0 => "the first body has no earlier one: let the others be coupled to it".to_string(),
+                1 => "must be an earlier body: 0, counted from 0".to_string(),
+                _ => format!("must be an earlier body: 0 to {}, counted from 0", b - 1),
             };
             return Err(Error::input(key("to"), to, allowed));
         }
@@ -322,7 +331,6 @@ fn check_couplings(bodies: &[Body], b: usize) -> Result<(), Error> {
         match coupling {
             Coupling::Hinge { height, .. } => {
                 not_negative(key("height"), *height)?;
-                hinges += 1;
             }
             Coupling::Spring { stiffness, damping, friction, .. } => {
                 positive(key("stiffness"), *stiffness)?;
@@ -331,11 +339,22 @@ fn check_couplings(bodies: &[Body], b: usize) -> Result<(), Error> {
             }
         }
     }
+    let hinges = couplings.iter().filter(|coupling| coupling.is_hinge()).count();
     if hinges > 1 {
-        let allowed = "at most one in each body; couple the other body to this one, or use springs";
-        return Err(Error::input(here, format!("{hinges} hinges"), allowed));
+        let allowed = "at most one: let the other body be hinged to this one, or use springs";
+        return Err(Error::input(format!("bodies[{b}].hinge"), format!("{hinges} hinges"), allowed));
     }
     Ok(())
+}
+
+/// How messages name a coupling: the hinge of its body, or one of the springs.
+fn coupling_key(bodies: &[Body], b: usize, k: usize) -> String {
+    let couplings = &bodies[b].couplings;
+    let prefix = prefix(bodies, b);
+    if couplings[k].is_hinge() {
+        return format!("{prefix}hinge");
+    }
+    format!("{prefix}springs[{}]", couplings[..k].iter().filter(|coupling| !coupling.is_hinge()).count())
 }
 
 /// Refuses a body whose couplings put it at different places along the road.
@@ -347,9 +366,9 @@ fn check_upright(bodies: &[Body]) -> Result<(), Error> {
             let (there, here) = (positions[to] + at, positions[b] + own);
             if (there - here).abs() > 1e-6 * (1.0 + there.abs()) {
                 return Err(Error::input(
-                    format!("{}couplings[{k}].own", prefix(bodies, b)),
+                    format!("{}.own", coupling_key(bodies, b, k)),
                     format!("{own} m"),
-                    format!("couplings stand upright: must be {} m as the first has it", there - positions[b]),
+                    format!("what joins two bodies stands upright: must be {} m here", there - positions[b]),
                 ));
             }
         }

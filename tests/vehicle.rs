@@ -211,6 +211,7 @@ fn trains_keep_their_loads() {
     let forces = Vehicle::force_train(&[1e4, 2e4, 3e4], &positions).unwrap();
     assert_eq!(forces.static_loads(1.62), [1e4, 2e4, 3e4]);
     assert_eq!((forces.mass(), forces.wheelbase()), (0.0, 5.0));
+    assert!(forces.frequencies(Suspension::Locked).is_empty());
     let masses = Vehicle::moving_masses(&[1e3, 2e3, 3e3], &positions).unwrap();
     assert_eq!(masses.static_loads(2.0), [2e3, 4e3, 6e3]);
     assert_eq!(masses.mass(), 6e3);

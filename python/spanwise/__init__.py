@@ -7,17 +7,23 @@ from spanwise.case import Case
 from spanwise.crossing import cross
 from spanwise.run import Envelope, Extremes, Run
 from spanwise.table import ImpactFactors
-from spanwise.vehicles import Axle, Vehicle
+from spanwise.trains import ForceTrain, MovingMasses
+from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 __all__ = [
     "Axle",
+    "Body",
     "Bridge",
     "Case",
     "Envelope",
     "Extremes",
+    "ForceTrain",
+    "Hinge",
     "ImpactFactors",
     "Modes",
+    "MovingMasses",
     "Run",
+    "Spring",
     "Vehicle",
     "__version__",
     "cross",

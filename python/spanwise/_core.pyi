@@ -1,4 +1,4 @@
-from typing import Final, final
+from typing import Final, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,6 +6,12 @@ from numpy.typing import NDArray
 __all__ = ["Bridge", "Crossing", "Vehicle", "__version__", "cross"]
 
 __version__: Final[str]
+
+_Friction: TypeAlias = tuple[float, float, float | None, float | None]
+_Axle: TypeAlias = tuple[list[float], _Friction]
+_Hinge: TypeAlias = tuple[int, float, float, float]
+_Spring: TypeAlias = tuple[int, float, float, float, float, _Friction]
+_Body: TypeAlias = tuple[list[float], list[_Axle], _Hinge | None, list[_Spring]]
 
 @final
 class Bridge:
@@ -56,9 +62,21 @@ class Bridge:
 
 @final
 class Vehicle:
-    def __new__(
-        cls, *, mass: float, pitch_inertia: float, cg_height: float, axles: list[list[float]]
-    ) -> Vehicle: ...
+    def __new__(cls, bodies: list[_Body]) -> Vehicle: ...
+    @staticmethod
+    def force_train(loads: list[float], positions: list[float]) -> Vehicle: ...
+    @staticmethod
+    def moving_masses(masses: list[float], positions: list[float]) -> Vehicle: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def body_positions(self) -> NDArray[np.float64]: ...
+    @property
+    def axle_order(self) -> list[tuple[int, int]]: ...
+    @property
+    def coordinates(self) -> list[str]: ...
     def static_loads(self, gravity: float) -> NDArray[np.float64]: ...
     def frequencies(self, locked: bool) -> NDArray[np.float64]: ...
 

@@ -4,32 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from spanwise._casefile import CaseError, parse_toml, read_text
-from spanwise._checks import numbers, shown
+from spanwise._checks import shown
 from spanwise._keys import Keys, suggestion
+from spanwise._vehicletable import home as vehicle_home
+from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.run import Run
-from spanwise.vehicles import PRESETS, Axle, Vehicle
+from spanwise.vehicles import AnyVehicle
 
 __all__ = ["Case", "CaseError"]
 
 Table: TypeAlias = Mapping[str, Any]
 
 BRIDGE: Final = Keys.of(Bridge)
-VEHICLE: Final = Keys.of(Vehicle)
-AXLE: Final = Keys.of(Axle)
 CROSSING: Final = Keys.of(cross)
-TABLES: Final = {"bridge": BRIDGE, "vehicle": VEHICLE, "crossing": CROSSING}
-
-#: Beside a preset all keys of a vehicle but its axles, whose initial friction alone can be given.
-PRESET: Final = Keys(
-    ("preset", *(key for key in VEHICLE.allowed if key != "axles"), "initial_friction")
-)
+HOMES: Final = {"bridge": BRIDGE, "crossing": CROSSING}
+TABLES: Final = ("bridge", "vehicle", "crossing")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,15 +34,18 @@ class Case:
 
     The file has three tables. The keys of ``[bridge]`` are the arguments of `Bridge`; those of
     ``[crossing]`` the keyword arguments of `cross`; those of ``[vehicle]`` the arguments of
-    `Vehicle`, with one table ``[[vehicle.axles]]`` for each `Axle`, front first. Or ``[vehicle]``
-    names a ``preset``, and beside it what is to be different: any of these keys but the axles, and
-    ``initial_friction``, a list of one force [N] for each axle. Units are SI.
+    `Vehicle`, with one table ``[[vehicle.axles]]`` for each `Axle`, front first; or for a vehicle
+    of several bodies one table ``[[vehicle.bodies]]`` for each `Body`, with its
+    ``[[vehicle.bodies.axles]]``, ``[vehicle.bodies.hinge]`` and ``[[vehicle.bodies.springs]]``; or
+    the arguments of `ForceTrain` or of `MovingMasses`. Or ``[vehicle]`` names a ``preset``, and
+    beside it what is to be different: of a vehicle of one body any key but the axles, of some
+    trains a spacing, and ``initial_friction``, a list of one force [N] for each axle. Units are SI.
 
     Attributes
     ----------
     bridge : Bridge
         The bridge.
-    vehicle : Vehicle
+    vehicle : Vehicle or ForceTrain or MovingMasses
         The vehicle.
     crossing : dict
         Keyword arguments of `cross`.
@@ -69,7 +68,7 @@ class Case:
     """
 
     bridge: Bridge
-    vehicle: Vehicle
+    vehicle: AnyVehicle
     crossing: dict[str, Any] = field(default_factory=dict)
     source: str = "case"
 
@@ -101,7 +100,7 @@ class Case:
         with _errors_in(f"{source}, [bridge]"):
             bridge = _bridge(tables["bridge"])
         with _errors_in(f"{source}, [vehicle]"):
-            vehicle = _vehicle(tables["vehicle"])
+            vehicle = vehicle_of(tables["vehicle"], _home)
         with _errors_in(f"{source}, [crossing]"):
             CROSSING.check_known(tables["crossing"], _home)
             CROSSING.check_complete(tables["crossing"])
@@ -144,12 +143,10 @@ def _check_tables(tables: Table) -> None:
 
 def _home(key: str) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
-    if key in AXLE.allowed:
-        return " (belongs in each [[vehicle.axles]])"
-    if key == "preset":
-        return " (belongs in [vehicle])"
-    homes = [name for name, keys in TABLES.items() if key in keys.allowed]
-    return f" (belongs in {_list(homes)})" if homes else ""
+    homes = [f"[{name}]" for name, keys in HOMES.items() if key in keys.allowed]
+    if place := vehicle_home(key):
+        homes.insert(1 if "[bridge]" in homes else 0, place)
+    return f" (belongs in {', '.join(homes)})" if homes else ""
 
 
 def _list(tables: Iterable[str]) -> str:
@@ -160,44 +157,3 @@ def _bridge(table: Table) -> Bridge:
     BRIDGE.check_known(table, _home)
     BRIDGE.check_complete(table)
     return Bridge(**table)
-
-
-def _vehicle(table: Table) -> Vehicle:
-    if "preset" in table:
-        return _preset(table)
-    Keys(("preset", *VEHICLE.allowed)).check_known(table, _home)
-    try:
-        VEHICLE.check_complete(table)
-    except ValueError as error:
-        raise ValueError(f"{error}; or name a preset: {', '.join(PRESETS)}") from error
-    axles = table["axles"]
-    if not isinstance(axles, list):
-        raise ValueError(f"axles = {shown(axles)}: must be a list of tables, [[vehicle.axles]]")
-    return Vehicle(**{**table, "axles": [_axle(k, axle) for k, axle in enumerate(axles)]})
-
-
-def _axle(k: int, table: Table) -> Axle:
-    if not isinstance(table, dict):
-        raise ValueError(f"axles[{k}] = {shown(table)}: must be a table, [[vehicle.axles]]")
-    try:
-        AXLE.check_known(table, _home)
-        AXLE.check_complete(table)
-    except ValueError as error:
-        raise ValueError(f"axles[{k}]: {error}") from error
-    return Axle(**table)
-
-
-def _preset(table: Table) -> Vehicle:
-    name = table["preset"]
-    if name not in [*PRESETS]:
-        hint = suggestion(name, PRESETS) if isinstance(name, str) else ""
-        raise ValueError(f"preset = {shown(name)}: must be one of {', '.join(PRESETS)}{hint}")
-    PRESET.check_known(
-        table, lambda key: " (not beside a preset)" if key in VEHICLE.allowed else ""
-    )
-    changes = {key: table[key] for key in VEHICLE.allowed if key in table}
-    vehicle = replace(PRESETS[name](), **changes)
-    if "initial_friction" in table:
-        friction = numbers("initial_friction", table["initial_friction"])
-        vehicle = vehicle.with_initial_friction(*friction)
-    return vehicle

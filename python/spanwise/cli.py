@@ -1,4 +1,4 @@
-"""The command line: ``spanwise cross CASE.toml``."""
+"""The command line: ``spanwise cross CASE.toml``, ``spanwise vehicles``."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from spanwise._csv import csv_files
 from spanwise._figures import figure_files
 from spanwise._files import write_files
 from spanwise.case import Case
+from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
 from spanwise.summary import summary
 
@@ -24,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 0, 2 for bad input, 1 if the numerics fail."""
     try:
         options = _parser().parse_args(arguments)
-        _say(_cross(options))
+        _say(options.work(options))
     except KeyboardInterrupt:
         print("spanwise: interrupted", file=sys.stderr)
         return INTERRUPTED
@@ -79,7 +80,21 @@ def _parser() -> _Parser:
         metavar="DIR",
         help="write figures there, as PNG and SVG; needs spanwise[plot]",
     )
+    cross.set_defaults(work=_cross)
+    vehicles = commands.add_parser(
+        "vehicles",
+        allow_abbrev=False,
+        help="list the vehicles that a case can name",
+        description="List the vehicles that a case can name as preset, or show one of them with "
+        "its axle loads, its frequencies and all its values as TOML.",
+    )
+    vehicles.add_argument("preset", nargs="?", metavar="PRESET", help="the one to show")
+    vehicles.set_defaults(work=_vehicles)
     return parser
+
+
+def _vehicles(options: argparse.Namespace) -> str:
+    return (listing() if options.preset is None else detail(options.preset)) + "\n"
 
 
 def _cross(options: argparse.Namespace) -> str:

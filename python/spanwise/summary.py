@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TypeAlias
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from spanwise.run import Extremes, Run
 from spanwise.table import factor_text
+from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -25,22 +26,43 @@ def _description(run: Run) -> list[str]:
     rigidities = bridge.EI if np.ptp(bridge.EI) > 0.0 else bridge.EI[:1]
     ratios = np.asarray(used["damping"])
     damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
-    holding, sliding = (truck.frequencies(locked=locked) for locked in (True, False))
+    # A train of forces has none.
+    mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
     return [
         f"bridge    {bridge.length:g} m, {held}",
         f"          EI {_list(rigidities, '.5g')} N m2; {len(bridge.masses)} moving masses, "
         f"{bridge.masses.sum() / 1000.0:.4g} t",
-        f"vehicle   {truck.mass / 1000.0:.4g} t; static axle loads "
+        f"vehicle   {mass}static axle loads "
         f"{_list(run.static_axle_loads / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from first to "
         "last axle",
-        f"          on rigid ground {_list(holding, '.3f')} Hz while friction holds, "
-        f"{_list(sliding, '.3f')} Hz sliding",
+        *_frequencies(truck),
         f"modes     {len(run.frequencies)}: {_list(run.frequencies, '.3f')} Hz; damping {damping}",
         f"crossing  {used['speed']:g} m/s, {used['drive']}, {run.final_speed:.6g} m/s at the end; "
         f"approach {used['approach']:g} m, tail {used['tail']:g} s",
         f"          {run.steps} steps of {used['step']:.4g} s, beta {used['beta']:.4g}; "
         f"recovery by {used['recovery']}",
     ]
+
+
+def _frequencies(truck: AnyVehicle) -> Iterator[str]:
+    """Those of the vehicle on rigid ground, in both states if it has two, in lines of a few."""
+    states = {
+        "while friction holds": truck.frequencies(locked=True),
+        "sliding": truck.frequencies(locked=False),
+    }
+    holding, sliding = states.values()
+    if len(holding) == 0:
+        return
+    if len(holding) <= 2:
+        yield (
+            f"          on rigid ground {_list(holding, '.3f')} Hz while friction holds, "
+            f"{_list(sliding, '.3f')} Hz sliding"
+        )
+    elif np.array_equal(holding, sliding):
+        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
+    else:
+        for state, found in states.items():
+            yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"
 
 
 def _governing(run: Run) -> list[str]:

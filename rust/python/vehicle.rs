@@ -5,22 +5,67 @@ use pyo3::prelude::*;
 
 use super::Vector;
 use crate::assembly::{BuildUp, Friction};
-use crate::vehicle::{self, Axle, Suspension};
+use crate::vehicle::{self, Axle, Body, Coupling, Suspension};
 
-/// A rigid body on massless axles with friction.
+/// Limit, initial force, stiffness of the stick, decay of a leaf spring.
+type PyFriction = (f64, f64, Option<f64>, Option<f64>);
+
+/// Position, mass, stiffness and damping of the tyre, of the suspension, and friction.
+type PyAxle = ([f64; 6], PyFriction);
+
+/// Which body, the place on it, the place on the own body, height.
+type PyHinge = (usize, f64, f64, f64);
+
+/// Which body, the place on it, the place on the own body, stiffness, damping, friction.
+type PySpring = (usize, f64, f64, f64, f64, PyFriction);
+
+/// Mass, pitch inertia and height, axles, hinge, springs.
+type PyBody = ([f64; 3], Vec<PyAxle>, Option<PyHinge>, Vec<PySpring>);
+
+/// A vehicle, or a train of forces or masses.
 #[pyclass(name = "Vehicle", frozen, module = "spanwise._core")]
 pub struct PyVehicle(pub vehicle::Vehicle);
 
 #[pymethods]
 impl PyVehicle {
     #[new]
-    #[pyo3(signature = (*, mass, pitch_inertia, cg_height, axles))]
-    fn new(mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<[f64; 5]>) -> PyResult<Self> {
-        let axles = axles.into_iter().map(|[position, tyre, suspension, limit, initial]| Axle {
-            friction: Friction { limit, initial, build_up: BuildUp::Rigid },
-            ..Axle::new(position, tyre, suspension)
-        });
-        Ok(PyVehicle(vehicle::Vehicle::new(mass, pitch_inertia, cg_height, axles.collect())?))
+    fn new(bodies: Vec<PyBody>) -> PyResult<Self> {
+        Ok(PyVehicle(vehicle::Vehicle::of_bodies(bodies.into_iter().map(body).collect())?))
+    }
+
+    #[staticmethod]
+    fn force_train(loads: Vec<f64>, positions: Vec<f64>) -> PyResult<Self> {
+        Ok(PyVehicle(vehicle::Vehicle::force_train(&loads, &positions)?))
+    }
+
+    #[staticmethod]
+    fn moving_masses(masses: Vec<f64>, positions: Vec<f64>) -> PyResult<Self> {
+        Ok(PyVehicle(vehicle::Vehicle::moving_masses(&masses, &positions)?))
+    }
+
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.0.mass()
+    }
+
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        self.0.positions().into_pyarray(py)
+    }
+
+    #[getter]
+    fn body_positions<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        self.0.assembly().body_positions.clone().into_pyarray(py)
+    }
+
+    #[getter]
+    fn axle_order(&self) -> Vec<(usize, usize)> {
+        self.0.axle_order()
+    }
+
+    #[getter]
+    fn coordinates(&self) -> Vec<String> {
+        self.0.assembly().coordinates.clone()
     }
 
     fn static_loads<'py>(&self, py: Python<'py>, gravity: f64) -> PyResult<Vector<'py>> {
@@ -32,4 +77,37 @@ impl PyVehicle {
         let suspension = if locked { Suspension::Locked } else { Suspension::Sliding };
         self.0.frequencies(suspension).into_pyarray(py)
     }
+}
+
+fn body(([mass, pitch_inertia, cg_height], axles, hinge, springs): PyBody) -> Body {
+    let hinge = hinge.map(|(to, at, own, height)| Coupling::Hinge { to, at, own, height });
+    let springs = springs.into_iter().map(|(to, at, own, stiffness, damping, rubs)| Coupling::Spring {
+        to,
+        at,
+        own,
+        stiffness,
+        damping,
+        friction: friction(rubs),
+    });
+    Body {
+        mass,
+        pitch_inertia,
+        cg_height,
+        axles: axles.into_iter().map(axle).collect(),
+        couplings: hinge.into_iter().chain(springs).collect(),
+    }
+}
+
+fn axle(([position, mass, tyre, tyre_damping, suspension, suspension_damping], rubs): PyAxle) -> Axle {
+    let plain = Axle::new(position, tyre, suspension);
+    Axle { mass, tyre_damping, suspension_damping, friction: friction(rubs), ..plain }
+}
+
+fn friction((limit, initial, stick, decay): PyFriction) -> Friction {
+    let build_up = match (stick, decay) {
+        (_, Some(decay)) => BuildUp::Leaf(decay),
+        (Some(stick), None) => BuildUp::Elastic(stick),
+        (None, None) => BuildUp::Rigid,
+    };
+    Friction { limit, initial, build_up }
 }

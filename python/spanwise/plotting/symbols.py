@@ -159,6 +159,40 @@ def friction(ax: Axes, x: float, shift: float, low: float, high: float, half_wid
         stroke(ax, here, head, width=0.7)
 
 
+def dashpot(ax: Axes, x: float, shift: float, low: float, high: float, half_width: float) -> None:
+    """An upright damper between two heights: a piston from above in a cup."""
+    here, third = local(ax, x), (high - low) / 3.0
+    inner = 0.7 * half_width
+    cup = [
+        (shift - half_width, high - third),
+        (shift - half_width, low + third),
+        (shift + half_width, low + third),
+        (shift + half_width, high - third),
+    ]
+    middle = 0.5 * (low + high)
+    stroke(ax, here, cup)
+    stroke(ax, here, [(shift, low), (shift, low + third)])
+    stroke(ax, here, [(shift - inner, middle), (shift + inner, middle)], width=1.4)
+    stroke(ax, here, [(shift, middle), (shift, high)])
+
+
+def hinge(ax: Axes, x: float, low: float, high: float) -> None:
+    """A pin in two brackets that hold one part above another."""
+    here, middle = local(ax, x), 0.5 * (low + high)
+    for y in (low, high):
+        stroke(ax, here, [(-4.0, y), (0.0, middle), (4.0, y)], fill="white", order=3.2)
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)
+    pin_ = np.column_stack([1.9 * np.cos(turn), middle + 1.9 * np.sin(turn)])
+    stroke(ax, here, pin_, fill="white", order=3.4)
+
+
+def arrow(ax: Axes, x: float, low: float, high: float) -> None:
+    """A force downward from one height to another."""
+    here = local(ax, x)
+    stroke(ax, here, [(0.0, low + 5.0), (0.0, high)], width=1.4)
+    stroke(ax, here, [(0.0, low), (-3.0, low + 8.0), (3.0, low + 8.0)], fill="black")
+
+
 def centre_of_mass(ax: Axes, x: float, y: float, radius: float = 5.0) -> None:
     """The quartered circle, y [points] above the base line."""
     here = local(ax, x)

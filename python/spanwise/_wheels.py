@@ -1,0 +1,73 @@
+"""What all that rolls over a bridge has in common: wheel lines, their loads, frequencies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise import _core
+from spanwise._checks import flag, number
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Standard gravity [m/s2].
+GRAVITY: Final = 9.80665
+
+
+class Wheels:
+    """A vehicle or a train, as the engine knows it."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def _core(self) -> _core.Vehicle: ...
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of all there is, unsprung masses included [kg]; of a train of forces none."""
+        return self._core.mass
+
+    @property
+    def axle_positions(self) -> Array:
+        """Distances of the axles ahead of the centre of mass of the whole vehicle [m].
+
+        Front first, shape (axles,). A train of forces has the centre of its loads in its place.
+        """
+        return self._core.positions
+
+    @property
+    def axle_spacings(self) -> Array:
+        """Distances from axle to axle [m], front first, shape (axles - 1,)."""
+        return -np.diff(self.axle_positions)
+
+    @property
+    def wheelbase(self) -> float:
+        """Distance from the first to the last axle [m]."""
+        return float(self.axle_positions[0] - self.axle_positions[-1])
+
+    @property
+    def coordinates(self) -> list[str]:
+        """Names of the independent coordinates, such as ``body 1 heave`` and ``axle 3 hop``."""
+        return self._core.coordinates
+
+    def static_loads(self, gravity: float = GRAVITY) -> Array:
+        """Static axle loads [N], front first, shape (axles,).
+
+        Those of a train of forces are as given, whatever gravity is.
+        """
+        return self._core.static_loads(number("gravity", gravity))
+
+    def frequencies(self, *, locked: bool) -> Array:
+        """Natural frequencies on rigid ground [Hz], ascending: bounce, pitch, axle hop.
+
+        There is one for each of `coordinates`; of a single axle there is no pitch, of a train none.
+
+        Parameters
+        ----------
+        locked : bool
+            Whether friction holds, so that of a massless axle the tyre alone is a spring and
+            elsewhere the stick acts beside the spring; or all slides, and springs act alone.
+        """
+        return self._core.frequencies(flag("locked", locked))

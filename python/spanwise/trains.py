@@ -1,0 +1,127 @@
+"""Trains: loads or masses in a row, without anything that vibrates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import InitVar, dataclass, fields
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+from spanwise import _core
+from spanwise._checks import numbers, shown
+from spanwise._wheels import Wheels
+
+if TYPE_CHECKING:
+    from spanwise.plotting import VehiclePlot
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceTrain(Wheels):
+    """Constant forces in a row: the axle loads of a code, or of a truck that has been weighed.
+
+    Parameters
+    ----------
+    loads : sequence of float
+        Forces [N], front first. They do not depend on gravity.
+    positions : sequence of float, optional
+        Distances ahead of any point [m], front first.
+    spacings : sequence of float, optional
+        Distances from each to the next [m], in place of `positions`.
+
+    Raises
+    ------
+    ValueError
+        If a value is not allowed, naming it and what is.
+    """
+
+    loads: Sequence[float]
+    positions: Sequence[float] = ()
+    spacings: InitVar[Sequence[float] | None] = None
+
+    def __post_init__(self, spacings: Sequence[float] | None) -> None:
+        loads = numbers("loads", self.loads)
+        positions = _positions(self.positions, spacings, "loads", len(loads))
+        object.__setattr__(self, "loads", tuple(loads))
+        object.__setattr__(self, "positions", tuple(positions))
+        object.__setattr__(self, "_core", _core.Vehicle.force_train(loads, positions))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        return _rebuilt, (type(self), {each.name: getattr(self, each.name) for each in fields(self)})
+
+    @property
+    def plot(self) -> VehiclePlot:
+        """Figures of the train; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import VehiclePlot
+
+        return VehiclePlot(self)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingMasses(Wheels):
+    """Masses in a row that follow the road and the bridge rigidly.
+
+    Parameters
+    ----------
+    masses : sequence of float
+        Masses [kg], front first.
+    positions : sequence of float, optional
+        Distances ahead of any point [m], front first.
+    spacings : sequence of float, optional
+        Distances from each to the next [m], in place of `positions`.
+
+    Raises
+    ------
+    ValueError
+        If a value is not allowed, naming it and what is.
+    """
+
+    masses: Sequence[float]
+    positions: Sequence[float] = ()
+    spacings: InitVar[Sequence[float] | None] = None
+
+    def __post_init__(self, spacings: Sequence[float] | None) -> None:
+        masses = numbers("masses", self.masses)
+        positions = _positions(self.positions, spacings, "masses", len(masses))
+        object.__setattr__(self, "masses", tuple(masses))
+        object.__setattr__(self, "positions", tuple(positions))
+        object.__setattr__(self, "_core", _core.Vehicle.moving_masses(masses, positions))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        return _rebuilt, (type(self), {each.name: getattr(self, each.name) for each in fields(self)})
+
+    @property
+    def plot(self) -> VehiclePlot:
+        """Figures of the train; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import VehiclePlot
+
+        return VehiclePlot(self)
+
+
+def _rebuilt(kind: type[Wheels], arguments: dict[str, Any]) -> Wheels:
+    return kind(**arguments)
+
+
+def _positions(
+    positions: Sequence[float], spacings: Sequence[float] | None, key: str, count: int
+) -> list[float]:
+    """Positions as given, or with the first at 0 from the spacings."""
+    given = numbers("positions", positions)
+    if spacings is None:
+        if not given and count == 1:
+            return [0.0]
+        if not given:
+            raise ValueError(f"positions = []: give one for each of the {count} {key}, or spacings")
+        return given
+    if given:
+        raise ValueError(f"spacings = {shown(spacings)}: not beside positions; give one of the two")
+    gaps = numbers("spacings", spacings)
+    if len(gaps) != count - 1:
+        raise ValueError(
+            f"spacings = {len(gaps)} values: must be one less than the {count} {key}"
+        )
+    for k, gap in enumerate(gaps):
+        if not 0.0 < gap < float("inf"):
+            raise ValueError(f"spacings[{k}] = {gap:g} m: must be finite and greater than 0")
+    return [0.0 - x for x in accumulate(gaps, initial=0.0)]

@@ -1,0 +1,368 @@
+"""Vehicles: rigid bodies on axles whose suspensions may rub, hinged or sprung to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from spanwise import _core
+from spanwise._checks import count, number, shown
+from spanwise._wheels import Array, Wheels
+
+if TYPE_CHECKING:
+    from spanwise.plotting import VehiclePlot
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axle:
+    """A tyre below a suspension, with an unsprung mass between them or none.
+
+    Parameters
+    ----------
+    position : float
+        Distance ahead of the centre of mass of its body [m].
+    tyre_stiffness : float
+        Tyre stiffness [N/m].
+    suspension_stiffness : float
+        Suspension stiffness [N/m].
+    mass : float, optional
+        Unsprung mass [kg]; 0 (default) for a massless axle.
+    tyre_damping, suspension_damping : float, optional
+        Damping [N s/m].
+    friction_limit : float, optional
+        Friction force at which the suspension slides [N]; ``inf`` locks it, 0 (default) leaves the
+        springs alone.
+    initial_friction : float, optional
+        Friction force in the static state [N], from -`friction_limit` to `friction_limit`. The
+        static state does not determine it, and it matters: consider both signs.
+    stick_stiffness : float, optional
+        Stiffness by which friction builds up before it slides [N/m], for axles with a mass: by
+        default 20 times that of the tyre. Friction of a massless axle holds rigidly.
+    leaf_decay : float, optional
+        Stroke within which the friction of a leaf spring goes towards its limit [m], some
+        millimetres; in place of `stick_stiffness`.
+
+    References
+    ----------
+    P. S. Fancher et al., "Measurement and representation of the mechanical properties of truck leaf
+    springs", SAE Technical Paper 800905 (1980), for `leaf_decay`.
+    """
+
+    position: float
+    tyre_stiffness: float
+    suspension_stiffness: float
+    mass: float = 0.0
+    tyre_damping: float = 0.0
+    suspension_damping: float = 0.0
+    friction_limit: float = 0.0
+    initial_friction: float = 0.0
+    stick_stiffness: float | None = None
+    leaf_decay: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hinge:
+    """A fifth wheel, a drawbar, or the pivot of a bogie: it joins a body to an earlier one.
+
+    A bogie that is a body of its own, hinged between its axles, equalises their static loads.
+
+    Parameters
+    ----------
+    to : int
+        The earlier body, counted from 0.
+    at : float
+        Distance of the hinge ahead of the centre of mass of that body [m].
+    own : float
+        Distance of the hinge ahead of the centre of mass of the body that has it [m].
+    height : float, optional
+        Height above the road [m]; matters where vehicles roll freely only.
+    """
+
+    to: int
+    at: float
+    own: float
+    height: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring:
+    """An upright spring and damper between a body and an earlier one: a secondary suspension.
+
+    Parameters
+    ----------
+    to : int
+        The earlier body, counted from 0.
+    at : float
+        Distance of the spring ahead of the centre of mass of that body [m].
+    own : float
+        Distance of the spring ahead of the centre of mass of the body that has it [m].
+    stiffness : float
+        Stiffness [N/m].
+    damping : float, optional
+        Damping [N s/m].
+    friction_limit, initial_friction, stick_stiffness, leaf_decay : float, optional
+        Friction beside the spring, as of an `Axle`. The stick has by default 20 times the stiffness
+        of the spring. Positive friction pushes the body with the higher centre of mass up; of two
+        at the same height, the earlier one.
+    """
+
+    to: int
+    at: float
+    own: float
+    stiffness: float
+    damping: float = 0.0
+    friction_limit: float = 0.0
+    initial_friction: float = 0.0
+    stick_stiffness: float | None = None
+    leaf_decay: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """A rigid body of a vehicle that has several.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg].
+    pitch_inertia : float
+        Moment of inertia about the centre of mass [kg m2].
+    axles : sequence of Axle, optional
+        Its axles, front first.
+    cg_height : float, optional
+        Height of the centre of mass above the road [m]; matters where vehicles roll freely only.
+    hinge : Hinge, optional
+        A hinge to an earlier body.
+    springs : sequence of Spring, optional
+        Springs to earlier bodies. Every body but the first needs a hinge or springs.
+    """
+
+    mass: float
+    pitch_inertia: float
+    axles: Sequence[Axle] = ()
+    cg_height: float = 0.0
+    hinge: Hinge | None = None
+    springs: Sequence[Spring] = ()
+
+    def __post_init__(self) -> None:
+        for name, kind in (("axles", Axle), ("springs", Spring)):
+            object.__setattr__(self, name, _all(name, getattr(self, name), kind))
+        if self.hinge is not None and not isinstance(self.hinge, Hinge):
+            raise ValueError(f"hinge = {shown(self.hinge)}: must be a Hinge")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vehicle(Wheels):
+    """Rigid bodies that bounce, pitch and roll along on their axles.
+
+    A vehicle of one body has `mass`, `pitch_inertia`, `axles` and `cg_height`; any other has
+    `bodies`.
+
+    Parameters
+    ----------
+    mass : float, optional
+        Mass of the one body [kg], without unsprung masses. None where there are several bodies.
+    pitch_inertia : float, optional
+        Moment of inertia about its centre of mass [kg m2]. None where there are several bodies.
+    axles : sequence of Axle, optional
+        Its axles, front first. A single axle stands below the centre of mass. Of a vehicle of
+        several bodies the axles of all, front first, each with its position in its own body.
+    cg_height : float, optional
+        Height of the centre of mass above the road [m]; matters under constant traction only.
+    bodies : sequence of Body, optional
+        The bodies, each but the first hinged or sprung to earlier ones. Empty where there is one.
+
+    Raises
+    ------
+    ValueError
+        If a value is not allowed, if an axle would carry no load, or if nothing resists some
+        motion, naming what is wrong and what is allowed.
+
+    Notes
+    -----
+    One body on massless axles is the model of A. S. Veletsos and T. Huang as used by Kishan and
+    Traill-Nash (1973), Fig. 2. Static loads are those of the springs, without friction: two axles
+    share the weight of their body by the lever rule, more as springs below a rigid body.
+
+    Examples
+    --------
+    A tractor and its trailer, joined by a fifth wheel:
+
+    >>> def axle(position, tyre, suspension):
+    ...     return Axle(position=position, tyre_stiffness=tyre, suspension_stiffness=suspension)
+    >>> tractor = Body(mass=4500, pitch_inertia=4604, axles=[axle(0.5, 2e6, 4e5), axle(-2.5, 4e6, 1e6)])
+    >>> trailer = Body(
+    ...     mass=31450,
+    ...     pitch_inertia=16302,
+    ...     axles=[axle(-2.9, 8e6, 2e6)],
+    ...     hinge=Hinge(to=0, at=-2.15, own=6.15),
+    ... )
+    >>> truck = Vehicle(bodies=[tractor, trailer])
+    """  # noqa: E501
+
+    mass: float | None = None
+    pitch_inertia: float | None = None
+    axles: Sequence[Axle] = ()
+    cg_height: float = 0.0
+    bodies: Sequence[Body] = ()
+
+    def __post_init__(self) -> None:
+        bodies = _all("bodies", self.bodies, Body)
+        if len(bodies) == 1 and bodies[0].hinge is None and not bodies[0].springs:
+            self._check_alone(())
+            (body,) = bodies
+            for name in ("mass", "pitch_inertia", "axles", "cg_height"):
+                object.__setattr__(self, name, getattr(body, name))
+            bodies = ()
+        core = _core.Vehicle(
+            [
+                _body(body, f"bodies[{b}]." if bodies else "")
+                for b, body in enumerate(bodies or (self._one_body(),))
+            ]
+        )
+        if bodies:
+            axles = tuple(bodies[b].axles[i] for b, i in core.axle_order)
+            self._check_alone(axles)
+            object.__setattr__(self, "axles", axles)
+        object.__setattr__(self, "bodies", bodies)
+        object.__setattr__(self, "_core", core)
+
+    def _one_body(self) -> Body:
+        missing = [name for name in ("mass", "pitch_inertia") if getattr(self, name) is None]
+        if missing and not self.axles:
+            raise ValueError(
+                f"missing {', '.join([*missing, 'axles'])}: give mass, pitch_inertia and axles, "
+                "or bodies"
+            )
+        object.__setattr__(self, "axles", _all("axles", self.axles, Axle))
+        # What is None is refused with the numbers.
+        return Body(
+            mass=self.mass,  # type: ignore[arg-type]
+            pitch_inertia=self.pitch_inertia,  # type: ignore[arg-type]
+            axles=self.axles,
+            cg_height=self.cg_height,
+        )
+
+    def _check_alone(self, axles: tuple[Axle, ...]) -> None:
+        """Refuses what describes one body beside several."""
+        given: dict[str, Any] = {"mass": self.mass, "pitch_inertia": self.pitch_inertia}
+        if self.cg_height != 0.0:
+            given["cg_height"] = self.cg_height
+        if self.axles and tuple(self.axles) != axles:
+            given["axles"] = self.axles
+        for name, value in given.items():
+            if value is not None:
+                raise ValueError(f"{name} = {shown(value)}: not beside bodies, which have their own")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        return _rebuilt, ({each.name: getattr(self, each.name) for each in fields(self)},)
+
+    @property
+    def parts(self) -> tuple[Body, ...]:
+        """The bodies, or the one body there is."""
+        return tuple(self.bodies) if self.bodies else (self._one_body(),)
+
+    @property
+    def body_positions(self) -> Array:
+        """Distances of the bodies' centres of mass ahead of that of the vehicle [m]."""
+        return self._core.body_positions
+
+    @property
+    def axle_order(self) -> list[tuple[int, int]]:
+        """Body and number in it of every axle, both from 0, front first."""
+        return self._core.axle_order
+
+    def with_initial_friction(self, *friction: float) -> Vehicle:
+        """The same vehicle with these friction forces in the static state [N], one by axle."""
+        if len(friction) != len(self.axles):
+            raise ValueError(
+                f"initial_friction = {shown(friction)}: give one force for each of the "
+                f"{len(self.axles)} axles"
+            )
+        parts = [[*body.axles] for body in self.parts]
+        for (b, i), force in zip(self.axle_order, friction, strict=True):
+            parts[b][i] = replace(parts[b][i], initial_friction=force)
+        bodies = [
+            replace(body, axles=axles) for body, axles in zip(self.parts, parts, strict=True)
+        ]
+        return Vehicle(bodies=bodies)
+
+    @property
+    def plot(self) -> VehiclePlot:
+        """Figures of the vehicle; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import VehiclePlot
+
+        return VehiclePlot(self)
+
+
+def _rebuilt(arguments: dict[str, Any]) -> Vehicle:
+    return Vehicle(**arguments)
+
+
+def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:
+    name = kind.__name__
+    if not isinstance(values, list | tuple):
+        raise ValueError(f"{key} = {shown(values)}: must be a list of {name}")
+    for k, each in enumerate(values):
+        if not isinstance(each, kind):
+            article = "an" if name[0] in "AEIOU" else "a"
+            raise ValueError(f"{key}[{k}] = {shown(each)}: must be {article} {name}")
+    return tuple(values)
+
+
+def _body(body: Body, prefix: str) -> _core._Body:
+    mass = "vehicle mass" if not prefix else f"{prefix}mass"
+    values = [
+        number(mass, body.mass),
+        *(number(prefix + name, getattr(body, name)) for name in ("pitch_inertia", "cg_height")),
+    ]
+    axles = [_axle(axle, f"{prefix}axles[{k}].") for k, axle in enumerate(body.axles)]
+    hinge = None
+    if body.hinge is not None:
+        ends = _ends(body.hinge, f"{prefix}hinge.")
+        hinge = (*ends, number(f"{prefix}hinge.height", body.hinge.height))
+    springs = [_spring(spring, f"{prefix}springs[{k}].") for k, spring in enumerate(body.springs)]
+    return values, axles, hinge, springs
+
+
+def _axle(axle: Axle, prefix: str) -> _core._Axle:
+    names = (
+        "position",
+        "mass",
+        "tyre_stiffness",
+        "tyre_damping",
+        "suspension_stiffness",
+        "suspension_damping",
+    )
+    return [number(prefix + name, getattr(axle, name)) for name in names], _friction(axle, prefix)
+
+
+def _spring(spring: Spring, prefix: str) -> _core._Spring:
+    stiffness = number(f"{prefix}stiffness", spring.stiffness)
+    damping = number(f"{prefix}damping", spring.damping)
+    return (*_ends(spring, prefix), stiffness, damping, _friction(spring, prefix))
+
+
+def _ends(coupling: Hinge | Spring, prefix: str) -> tuple[int, float, float]:
+    to = count(f"{prefix}to", coupling.to)
+    return to, number(f"{prefix}at", coupling.at), number(f"{prefix}own", coupling.own)
+
+
+def _friction(of: Axle | Spring, prefix: str) -> _core._Friction:
+    limit = number(f"{prefix}friction_limit", of.friction_limit)
+    initial = number(f"{prefix}initial_friction", of.initial_friction)
+    stick, decay = of.stick_stiffness, of.leaf_decay
+    if stick is not None and decay is not None:
+        raise ValueError(
+            f"{prefix}stick_stiffness = {shown(stick)}: not beside leaf_decay = {shown(decay)}; "
+            "give one of the two"
+        )
+    if stick is not None:
+        stick = number(f"{prefix}stick_stiffness", stick)
+    if decay is not None:
+        decay = number(f"{prefix}leaf_decay", decay)
+    return limit, initial, stick, decay
