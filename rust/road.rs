@@ -1,22 +1,140 @@
-//! The road (stand-in until the real one is merged).
+//! Roads: elevation, slope and curvature of the surface under the wheels, as functions of x.
+//!
+//! x runs from the left end of the bridge, negative on the left approach; elevation is positive up. A road is a sum of
+//! [`random`] roads after ISO 8608 ([`spectrum`]), measured [`profile`]s and single [`feature`]s, each averaged over
+//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness.
+
+pub mod feature;
+pub mod fft;
+pub mod golden_car;
+pub mod patch;
+pub mod philox;
+pub mod profile;
+pub mod random;
+pub mod spectrum;
+pub mod spline;
+pub mod turn;
+
+use std::sync::Arc;
+
+use crate::error::{Error, finite};
+use feature::Feature;
+use profile::Profile;
+use random::Random;
+
+/// Elevation, slope and curvature at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
+    /// Elevation, positive up [m].
     pub elevation: f64,
+    /// Its derivative with respect to x [-].
     pub slope: f64,
+    /// Its second derivative with respect to x [1/m].
     pub curvature: f64,
 }
+
+/// A road surface; copies share their data.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Road;
+pub struct Road {
+    parts: Vec<Part>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Part {
+    Random(Arc<Random>),
+    Profile(Arc<Profile>),
+    Feature(Arc<Feature>),
+}
+
+impl From<Random> for Road {
+    fn from(random: Random) -> Self {
+        Road { parts: vec![Part::Random(Arc::new(random))] }
+    }
+}
+
+impl From<Profile> for Road {
+    fn from(profile: Profile) -> Self {
+        Road { parts: vec![Part::Profile(Arc::new(profile))] }
+    }
+}
+
+impl From<Feature> for Road {
+    fn from(feature: Feature) -> Self {
+        Road { parts: vec![Part::Feature(Arc::new(feature))] }
+    }
+}
+
 impl Road {
-    pub fn smooth() -> Road {
-        Road
+    /// The road without any roughness.
+    pub fn smooth() -> Self {
+        Road { parts: Vec::new() }
     }
-    pub fn at(&self, _x: f64) -> Point {
-        Point { elevation: 0.0, slope: 0.0, curvature: 0.0 }
+
+    /// All of them on top of each other.
+    pub fn sum(roads: impl IntoIterator<Item = Road>) -> Self {
+        Road { parts: roads.into_iter().flat_map(|road| road.parts).collect() }
     }
+
+    /// Whether there is no roughness.
     pub fn is_smooth(&self) -> bool {
-        true
+        self.parts.is_empty()
     }
-    pub fn check_covers(&self, _from: f64, _to: f64) -> Result<(), crate::error::Error> {
+
+    /// Elevation, slope and curvature at x [m].
+    ///
+    /// A random road repeats beyond its period, and a profile goes on along the tangents at its ends: see
+    /// [`Road::check_covers`].
+    pub fn at(&self, x: f64) -> Point {
+        let mut sum = Point { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+        for part in &self.parts {
+            let point = match part {
+                Part::Random(random) => random.at(x),
+                Part::Profile(profile) => profile.at(x),
+                Part::Feature(feature) => feature.at(x),
+            };
+            sum.elevation += point.elevation;
+            sum.slope += point.slope;
+            sum.curvature += point.curvature;
+        }
+        sum
+    }
+
+    /// The x that the road is known for [m]; infinite where nothing was measured.
+    pub fn ends(&self) -> [f64; 2] {
+        self.parts.iter().fold([f64::NEG_INFINITY, f64::INFINITY], |[from, to], part| match part {
+            Part::Profile(profile) => [from.max(profile.ends()[0]), to.min(profile.ends()[1])],
+            _ => [from, to],
+        })
+    }
+
+    /// Length after which the road, or a part of it, repeats [m]; infinite if none does.
+    pub fn period(&self) -> f64 {
+        self.parts.iter().fold(f64::INFINITY, |shortest, part| match part {
+            Part::Random(random) => shortest.min(random.period()),
+            _ => shortest,
+        })
+    }
+
+    /// Refuses a path from `from` to `to` [m] on which the road is not known everywhere, or repeats.
+    pub fn check_covers(&self, from: f64, to: f64) -> Result<(), Error> {
+        self.check_holds(from, to)?;
+        let period = self.period();
+        if to - from > period {
+            let allowed =
+                format!("it repeats after its period of {period} m, and the path is longer; give a longer one");
+            return Err(Error::input("road", format!("path from {from} m to {to} m"), allowed));
+        }
+        Ok(())
+    }
+
+    /// Refuses a stretch from `from` to `to` [m] on which the road is not known everywhere.
+    pub fn check_holds(&self, from: f64, to: f64) -> Result<(), Error> {
+        let (from, to) = (finite("path from", from)?, finite("path to", to)?);
+        let [first, last] = self.ends();
+        if from < first || to > last {
+            let allowed = format!("the road covers only {first} m to {last} m");
+            return Err(Error::input("road", format!("path from {from} m to {to} m"), allowed));
+        }
         Ok(())
     }
 }

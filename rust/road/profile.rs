@@ -1,0 +1,168 @@
+//! Measured roads: a cubic spline through points at any spacing.
+//!
+//! The spline is twice continuously differentiable, the smoothest curve through the points, and reproduces waves down to
+//! a few points long better than cubics with slopes from neighbouring points, which flatten them: a measured profile
+//! has most of its slope and curvature there. The third derivative is continuous at the second point and the last but
+//! one ("not a knot"), so that nothing is assumed about the ends and cubics are reproduced.
+
+use super::Point;
+use super::patch::{Curve, Patch};
+use crate::error::{Error, finite, positive};
+
+/// Fewest points that determine a cubic.
+const FEWEST: usize = 4;
+
+/// Largest spacing without a `max_gap`, in median spacings.
+const GAP: f64 = 5.0;
+
+/// A measured profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    x: Vec<f64>,
+    /// The cubic from each point to the next in powers of the distance from the point [m].
+    cubics: Vec<[f64; 4]>,
+    /// Integral of the elevation from the first point to each [m²].
+    integrals: Vec<f64>,
+    patch: Patch,
+}
+
+impl Profile {
+    /// Through elevations [m] at x [m], which must increase by no more than `max_gap` [m] (five median spacings
+    /// without); `detrend` takes off their least-squares line.
+    pub fn new(
+        x: Vec<f64>,
+        mut elevation: Vec<f64>,
+        detrend: bool,
+        patch: Patch,
+        max_gap: Option<f64>,
+    ) -> Result<Self, Error> {
+        check(&x, &elevation, max_gap)?;
+        if detrend {
+            take_off_line(&x, &mut elevation);
+        }
+        let cubics = spline(&x, &elevation);
+        let mut integrals = vec![0.0];
+        for (piece, [a, b, c, d]) in x.windows(2).zip(&cubics) {
+            let h = piece[1] - piece[0];
+            let area = h * (a + h * (b / 2.0 + h * (c / 3.0 + h * d / 4.0)));
+            integrals.push(integrals[integrals.len() - 1] + area);
+        }
+        Ok(Profile { x, cubics, integrals, patch })
+    }
+
+    /// First and last x [m].
+    pub fn ends(&self) -> [f64; 2] {
+        [self.x[0], self.x[self.x.len() - 1]]
+    }
+
+    /// Elevation, slope and curvature at x, averaged over the contact patch.
+    pub fn at(&self, x: f64) -> Point {
+        self.patch.average(|x| self.curve(x), x)
+    }
+
+    /// The spline; beyond its ends, where half a contact patch may reach, its tangents.
+    fn curve(&self, x: f64) -> Curve {
+        let [first, last] = self.ends();
+        let inside = x.clamp(first, last);
+        let piece = self.x[1..self.cubics.len()].partition_point(|&each| each <= inside);
+        let [a, b, c, d] = self.cubics[piece];
+        let t = inside - self.x[piece];
+        let elevation = a + t * (b + t * (c + t * d));
+        let slope = b + t * (2.0 * c + t * 3.0 * d);
+        let integral = self.integrals[piece] + t * (a + t * (b / 2.0 + t * (c / 3.0 + t * d / 4.0)));
+        let beyond = x - inside;
+        Curve {
+            integral: integral + beyond * (elevation + 0.5 * beyond * slope),
+            elevation: elevation + beyond * slope,
+            slope,
+            curvature: if beyond == 0.0 { 2.0 * c + t * 6.0 * d } else { 0.0 },
+        }
+    }
+}
+
+fn check(x: &[f64], elevation: &[f64], max_gap: Option<f64>) -> Result<(), Error> {
+    if x.len() != elevation.len() {
+        let allowed = format!("must be one for each x, {}", x.len());
+        return Err(Error::input("elevation", format!("{} values", elevation.len()), allowed));
+    }
+    if x.len() < FEWEST {
+        return Err(Error::input("x", format!("{} points", x.len()), format!("must be {FEWEST} or more")));
+    }
+    for (k, (x, elevation)) in x.iter().zip(elevation).enumerate() {
+        finite(format!("x[{k}]"), *x)?;
+        finite(format!("elevation[{k}]"), *elevation)?;
+    }
+    for (k, pair) in x.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            let allowed = format!("x must increase from point to point: must be greater than x[{k}] = {} m", pair[0]);
+            return Err(Error::input(format!("x[{}]", k + 1), format!("{} m", pair[1]), allowed));
+        }
+    }
+    let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    spacings.sort_by(f64::total_cmp);
+    let limit = match max_gap {
+        Some(gap) => positive("max_gap", gap)?,
+        None => GAP * spacings[spacings.len() / 2],
+    };
+    for (k, pair) in x.windows(2).enumerate() {
+        let gap = pair[1] - pair[0];
+        if gap > limit {
+            let allowed =
+                format!("{gap} m from the point before, x[{k}] = {} m: must be at most max_gap = {limit} m", pair[0]);
+            return Err(Error::input(format!("x[{}]", k + 1), format!("{} m", pair[1]), allowed));
+        }
+    }
+    Ok(())
+}
+
+/// Takes the least-squares line off the elevations.
+fn take_off_line(x: &[f64], elevation: &mut [f64]) {
+    let n = x.len() as f64;
+    let middle = x.iter().sum::<f64>() / n;
+    let mean = elevation.iter().sum::<f64>() / n;
+    let moment: f64 = x.iter().zip(&*elevation).map(|(x, r)| (x - middle) * (r - mean)).sum();
+    let square: f64 = x.iter().map(|x| (x - middle) * (x - middle)).sum();
+    for (x, r) in x.iter().zip(elevation) {
+        *r -= mean + moment / square * (x - middle);
+    }
+}
+
+/// The cubics of the spline, from its second derivatives m: h m₋ + 2(h + k) m + k m₊ = 6 (change of the chord's slope).
+fn spline(x: &[f64], elevation: &[f64]) -> Vec<[f64; 4]> {
+    let last = x.len() - 1;
+    let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let chord: Vec<f64> = (0..last).map(|k| (elevation[k + 1] - elevation[k]) / h[k]).collect();
+    let mut m = vec![0.0; last + 1];
+    // Forward elimination over the inner points; the outer derivatives follow from the third being continuous next to
+    // the ends: m_0 = m_1 + (m_1 − m_2) h_0/h_1.
+    let mut upper = vec![0.0; last];
+    for k in 1..last {
+        let (mut below, mut diagonal, mut above) = (h[k - 1], 2.0 * (h[k - 1] + h[k]), h[k]);
+        if k == 1 {
+            let ratio = h[0] / h[1];
+            diagonal += below * (1.0 + ratio);
+            above -= below * ratio;
+            below = 0.0;
+        }
+        if k == last - 1 {
+            let ratio = h[last - 1] / h[last - 2];
+            diagonal += h[k] * (1.0 + ratio);
+            below -= h[k] * ratio;
+            above = 0.0;
+        }
+        let pivot = diagonal - below * upper[k - 1];
+        upper[k] = above / pivot;
+        m[k] = (6.0 * (chord[k] - chord[k - 1]) - below * m[k - 1]) / pivot;
+    }
+    for k in (1..last - 1).rev() {
+        m[k] -= upper[k] * m[k + 1];
+    }
+    m[0] = m[1] + (m[1] - m[2]) * h[0] / h[1];
+    m[last] = m[last - 1] + (m[last - 1] - m[last - 2]) * h[last - 1] / h[last - 2];
+    (0..last)
+        .map(|k| {
+            let slope = chord[k] - h[k] * (2.0 * m[k] + m[k + 1]) / 6.0;
+            [elevation[k], slope, m[k] / 2.0, (m[k + 1] - m[k]) / (6.0 * h[k])]
+        })
+        .collect()
+}
