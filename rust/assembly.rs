@@ -42,6 +42,17 @@ pub struct Assembly {
     pub body_positions: Vec<f64>,
     /// Displacement of the unsprung mass above each contact, where there is one, as a row.
     pub hops: Vec<Option<DVector<f64>>>,
+    /// The suspension above that mass.
+    pub suspensions: Vec<Option<Sprung>>,
+}
+
+/// The suspension of an axle with mass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sprung {
+    /// Its shortening, as a row over q.
+    pub row: DVector<f64>,
+    /// Its friction element, if it rubs.
+    pub friction: Option<usize>,
 }
 
 /// A wheel line on the road.
@@ -231,6 +242,7 @@ impl Assembly {
             bodies: Vec::new(),
             body_positions: positions(bodies),
             hops: Vec::new(),
+            suspensions: Vec::new(),
         };
         let mut weight = DVector::zeros(n);
         let mut parts: Vec<Part> = Vec::new();
@@ -260,7 +272,12 @@ impl Assembly {
                 weight.axpy(axle.mass, hop, 1.0);
                 parts.push((axle.mass, ground.clone(), position));
                 let friction = axle.friction.softened(axle.tyre_stiffness);
-                assembly.connect(&above - hop, axle.suspension_stiffness, axle.suspension_damping, friction);
+                let (row, before) = (&above - hop, assembly.frictions.len());
+                assembly.connect(row.clone(), axle.suspension_stiffness, axle.suspension_damping, friction);
+                let friction = (assembly.frictions.len() > before).then_some(before);
+                assembly.suspensions.push(Some(Sprung { row, friction }));
+            } else {
+                assembly.suspensions.push(None);
             }
             let row = hop.clone().unwrap_or(above);
             assembly.contacts.push(ContactPoint { row, position, surge_row: ground, share: 0.0, law: law(axle) });
@@ -288,6 +305,7 @@ impl Assembly {
             bodies: Vec::new(),
             body_positions: Vec::new(),
             hops: vec![None; laws.len()],
+            suspensions: vec![None; laws.len()],
             contacts: laws
                 .into_iter()
                 .zip(positions)

@@ -16,7 +16,7 @@ use crate::newmark::Coordinate;
 use crate::path::{Free, Ground, ModeShapes, Prescribed};
 use crate::rig::Rig;
 use crate::road::Road;
-use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, Stepper, Unsettled};
+use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, State, Stepper, Unsettled};
 use crate::vehicle::{Suspension, Vehicle};
 
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
@@ -419,7 +419,7 @@ impl<'a> March<'a> {
             *travel = course.centre(0.0);
         }
         self.check_apart(0.0, geometry)?;
-        self.history.record(0.0, &state, geometry);
+        self.record(0.0, &state, geometry);
         for n in 1.. {
             let time = n as f64 * self.h;
             let before = front(geometry);
@@ -435,7 +435,7 @@ impl<'a> March<'a> {
             }
             self.stand(time, &mut state.travel, geometry, stop)?;
             self.check_apart(time, geometry)?;
-            self.history.record(time, &state, geometry);
+            self.record(time, &state, geometry);
             self.note_ends(time);
             if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
                 let end = end + self.settings.tail;
@@ -454,6 +454,11 @@ impl<'a> March<'a> {
             }
         }
         unreachable!("the loop over steps has no end")
+    }
+
+    fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
+        let assemblies = self.courses.iter().map(|course| course.vehicle.assembly());
+        self.history.record(time, state, geometry, assemblies);
     }
 
     /// How far an own axle has come at a recorded instant, from the end at which the vehicle enters [m].

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::assembly::{Assembly, Sprung};
 use crate::newmark::Coordinate;
 use crate::step::{Geometry, State};
 
@@ -49,11 +50,11 @@ pub struct History {
     pub a_ddot: Vec<f64>,
     /// Coordinates and travel of each vehicle with their first and second derivatives, row by row.
     pub motion: Vec<f64>,
-    /// Suspension shortenings of massless axles since the static state [m], row by row.
+    /// Suspension shortenings since the static state [m], row by row.
     pub shortenings: Vec<f64>,
-    /// Friction forces in the suspensions of massless axles [N], row by row.
+    /// Friction forces in the suspensions [N], row by row.
     pub friction: Vec<f64>,
-    /// Forces of the friction elements between parts that have mass [N], row by row.
+    /// Friction forces between bodies, and again of the suspensions of axles with mass [N], row by row.
     pub rubbing: Vec<f64>,
     /// Road elevations under the axles [m], row by row.
     pub elevations: Vec<f64>,
@@ -120,13 +121,17 @@ impl History {
         all
     }
 
-    pub(crate) fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
+    pub(crate) fn record<'a>(
+        &mut self,
+        time: f64,
+        state: &State<f64>,
+        geometry: &impl Geometry<f64>,
+        assemblies: impl Iterator<Item = &'a Assembly>,
+    ) {
         self.time.push(time);
         for k in 0..self.axles {
             self.positions.push(geometry.motion(k).x);
             self.loads.push(self.static_loads[k] + state.increments[k]);
-            self.shortenings.push(state.strokes[k].shortening);
-            self.friction.push(state.strokes[k].friction);
             self.elevations.push(geometry.surface(k).elevation);
         }
         for stroke in &state.strokes[self.axles..] {
@@ -138,12 +143,24 @@ impl History {
             self.a_ddot.push(mode.a);
         }
         let mut first = 0;
-        for (vehicle, travel) in self.vehicles.iter().zip(&state.travel) {
-            let count = vehicle.motion.len() / 3 - 1;
-            for Coordinate { x, v, a } in state.coordinates[first..first + count].iter().chain([travel]) {
+        for ((vehicle, assembly), travel) in self.vehicles.iter().zip(assemblies).zip(&state.travel) {
+            let coordinates = &state.coordinates[first..first + assembly.mass.nrows()];
+            for Coordinate { x, v, a } in coordinates.iter().chain([travel]) {
                 self.motion.extend([x, v, a]);
             }
-            first += count;
+            first += coordinates.len();
+            for (axle, sprung) in vehicle.axles.clone().zip(&assembly.suspensions) {
+                let (shortening, friction) = match sprung {
+                    None => (state.strokes[axle].shortening, state.strokes[axle].friction),
+                    Some(Sprung { row, friction }) => {
+                        let shortening = row.iter().zip(coordinates).map(|(b, q)| b * q.x).sum();
+                        let element = friction.map(|f| self.axles + vehicle.frictions.start + f);
+                        (shortening, element.map_or(0.0, |k| state.strokes[k].friction))
+                    }
+                };
+                self.shortenings.push(shortening);
+                self.friction.push(friction);
+            }
         }
     }
 

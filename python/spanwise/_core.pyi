@@ -93,7 +93,12 @@ class Crossing:
     @property
     def steps(self) -> int: ...
     @property
-    def final_speed(self) -> float: ...
+    def final_speeds(self) -> list[float]: ...
+    @property
+    def stopped(self) -> list[float | None]: ...
+    @property
+    def lift_offs(self) -> list[tuple[int, float, float]]: ...
+    def motion(self, vehicle: int) -> NDArray[np.float64]: ...
     def histories(self, name: str) -> list[NDArray[np.float64]]: ...
     def states(self, name: str) -> NDArray[np.float64]: ...
     def envelope(self, quantity: str) -> list[NDArray[np.float64]]: ...
@@ -101,20 +106,31 @@ class Crossing:
         self, quantity: str, sense: str, ratio: str, mask: float
     ) -> NDArray[np.float64]: ...
 
+# Vehicle, speed, drive, direction, entry, lane, road.
+_Passage: TypeAlias = tuple[
+    Vehicle,
+    float | None,
+    tuple[str, list[float], list[float]] | None,
+    str,
+    float,
+    int,
+    Road | None,
+]
+
 def cross(
     bridge: Bridge,
-    vehicle: Vehicle,
+    passages: list[_Passage],
     *,
-    speed: float,
-    drive: str,
     modes: int,
     damping: list[float],
     damping_matrix: NDArray[np.float64] | None,
     beta: float,
     step: float | None,
     approach: float,
+    ramp: float,
     tail: float,
     gravity: float,
+    lift_off: bool,
     sections: list[float] | None,
     recovery: str,
 ) -> Crossing: ...

@@ -1,4 +1,4 @@
-"""One crossing of a bridge by a vehicle."""
+"""One crossing of a bridge by vehicles."""
 
 from __future__ import annotations
 
@@ -9,57 +9,75 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import array, count, number, numbers, shown, word
+from spanwise._checks import array, count, flag, number, numbers, shown, word
+from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
+from spanwise.roads import Road, Smooth
 from spanwise.run import Run
-from spanwise.vehicles import GRAVITY, Vehicle
+from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
+from spanwise.vehicles import AnyVehicle
 
-Drive: TypeAlias = Literal["constant-speed", "constant-traction"]
 Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
+Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
+
+#: Approach on an uneven road unless given [m]: the vehicle reaches the bridge in motion.
+APPROACH = 100.0
+
+#: Way on which unevenness fades in at the start of the approach unless given [m].
+RAMP = 20.0
 
 
 def cross(
     bridge: Bridge,
-    vehicle: Vehicle,
+    vehicle: Traffic,
     *,
-    speed: float,
+    speed: float | None = None,
     modes: int | None = None,
     drive: Drive = "constant-speed",
     damping: ArrayLike = 0.0,
-    approach: float = 0.0,
+    road: Road | None = None,
+    approach: float | None = None,
+    ramp: float | None = None,
     tail: float = 0.0,
     sections: Sequence[float] | None = None,
     recovery: Recovery = "force-summation",
     step: float | None = None,
     beta: float = 1.0 / 6.0,
     gravity: float = GRAVITY,
+    lift_off: bool = True,
     mask: float = 0.05,
 ) -> Run:
-    """Drive a vehicle over a bridge once.
+    """Drive a vehicle, or several, over a bridge once.
 
-    The vehicle starts in static equilibrium with its front axle at the start of the approach; the
-    bridge is at rest. The crossing ends when the last axle has left and the tail is over. The
-    results are those of the vehicle alone, without the dead load of the bridge.
+    Each vehicle starts in static equilibrium with its front axle at the start of the approach; the
+    bridge is at rest. The crossing ends when the last axle has left the bridge, or the last vehicle
+    has come to a stop, and the tail is over. The results are those of the vehicles alone, without
+    the dead load of the bridge.
 
     Parameters
     ----------
     bridge : Bridge
         The bridge.
-    vehicle : Vehicle
-        The vehicle.
-    speed : float
-        Speed at the start [m/s].
+    vehicle : Vehicle, ForceTrain, MovingMasses, Passage or sequence of Passage
+        The vehicle, or several, each with its own way of crossing.
+    speed : float, optional
+        Speed at the start [m/s]; needed unless every passage, or the drive, has its own.
     modes : int, optional
         Number of natural modes included. By default two for each span, at least three, at most as
         many as there are masses.
-    drive : {"constant-speed", "constant-traction"}, optional
-        Keep the speed, or keep traction and resistance in balance, so that the speed follows the
-        slope of the deflected bridge.
+    drive : {"constant-speed", "constant-traction"}, Acceleration, Speeds or Braking, optional
+        Keep the speed; or keep traction and resistance in balance, so that the speed follows the
+        slope of bridge and road; or one of the drives that have numbers of their own.
     damping : float or array_like, optional
         Ratio to critical damping, one for all modes or one for each; or the damping matrix C at the
         moving masses [N s/m], shape (stations, stations).
+    road : Road, optional
+        The road; smooth by default.
     approach : float, optional
-        Length of the rigid approach [m].
+        Length of the rigid approach [m]: by default none on a smooth road, 100 m on another.
+    ramp : float, optional
+        Way on which the unevenness fades in at the start of the approach [m]; by default 20 m, or
+        the approach if that is shorter.
     tail : float, optional
         Free vibration kept after the last axle has left [s]. The maxima can lie in it.
     sections : sequence of float, optional
@@ -69,12 +87,15 @@ def cross(
         damping forces from the coordinates (Eq. 11 of [1]_) or from their rates (Eq. 6), or by
         plain superposition of the modes (Eq. 2).
     step : float, optional
-        Longest time step [s]. By default a twentieth of the shortest coupled period or the time in
-        which the vehicle passes a hundredth of the narrowest panel, whichever is less.
+        Longest time step [s]. By default a twentieth of the shortest coupled period, the time in
+        which the fastest vehicle passes a hundredth of the narrowest panel or, on an uneven road,
+        50 mm, whichever is least.
     beta : float, optional
         Newmark's beta: 1/6 for linear, 1/4 for constant average acceleration.
     gravity : float, optional
         Gravity [m/s2].
+    lift_off : bool, optional
+        Whether wheels leave the road (default) or are held to it even if that takes tension.
     mask : float, optional
         Impact factors are not given where the static value is at most this fraction of the largest
         among the sections.
@@ -88,9 +109,9 @@ def cross(
     ------
     ValueError
         If a value is not allowed, naming it and what is; if the step is beyond the stability limit,
-        naming the limit.
+        naming the limit; if the road does not cover the path; if vehicles of a lane overlap.
     RuntimeError
-        If the numerics fail, or under constant traction the vehicle comes to rest.
+        If the numerics fail, or under constant traction a vehicle comes to rest.
 
     Notes
     -----
@@ -98,22 +119,37 @@ def cross(
     its wheel drops off the deflected end as it leaves. The bridge rings from that at any speed, so
     there impact factors do not tend to one as the speed goes down.
 
+    With tyre damping the contact force jumps as an axle enters or leaves the deflected bridge,
+    where the slope under it does; the results are then of first order in the step across such
+    instants, and of second order between them.
+
     References
     ----------
     .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973).
     """
     if not isinstance(bridge, Bridge):
         raise TypeError(f"bridge = {bridge!r}: must be a Bridge")
-    if not isinstance(vehicle, Vehicle):
-        raise TypeError(f"vehicle = {vehicle!r}: must be a Vehicle")
+    passages = _passages(vehicle)
+    if road is not None and not isinstance(road, Road):
+        raise TypeError(f"road = {road!r}: must be a Road")
+    surface = Smooth() if road is None else road
+    driven = drive_of(drive)
+    if speed is not None:
+        speed = number("speed", speed)
+    elif any(each.speed is None and not _timed(each.drive or driven) for each in passages):
+        raise ValueError("speed: missing; give it here or with every passage")
+    uneven = not all((each.road or surface).is_smooth for each in passages)
+    if approach is None:
+        approach = APPROACH if uneven else 0.0
+    if ramp is None:
+        ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
     if modes is None:
         spans = len(bridge.span_bounds) - 1
         modes = min(len(bridge.stations), max(3, 2 * spans))
     ratios, matrix = _damping(damping)
-    speed, beta, gravity = number("speed", speed), number("beta", beta), number("gravity", gravity)
+    beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
     approach, tail, mask = number("approach", approach), number("tail", tail), number("mask", mask)
-    modes = count("modes", modes)
-    drive_word = word("drive", drive, *get_args(Drive))
+    modes, lift_off = count("modes", modes), flag("lift_off", lift_off)
     recovery_word = word("recovery", recovery, *get_args(Recovery))
     if not 0.0 <= mask < 1.0:
         raise ValueError(
@@ -121,36 +157,76 @@ def cross(
         )
     core = _core.cross(
         bridge._core,
-        vehicle._core,
-        speed=speed,
-        drive=drive_word,
+        [_core_passage(each, speed, driven, surface) for each in passages],
         modes=modes,
         damping=ratios,
         damping_matrix=matrix,
         beta=beta,
         step=None if step is None else number("step", step),
         approach=approach,
+        ramp=ramp,
         tail=tail,
         gravity=gravity,
+        lift_off=lift_off,
         sections=None if sections is None else numbers("sections", sections),
         recovery=recovery_word,
     )
     settings: dict[str, object] = {
         "speed": speed,
         "modes": modes,
-        "drive": drive_word,
+        "drive": plain_drive(driven),
         "damping": matrix.tolist() if matrix is not None else ratios,
         "approach": approach,
+        "ramp": ramp,
         "tail": tail,
         "recovery": recovery_word,
         "beta": beta,
         "gravity": gravity,
+        "lift_off": lift_off,
         "mask": mask,
         "step": core.step,
     }
     if np.ndim(damping) == 0:
         settings["damping"] = ratios[0]
-    return Run(bridge, vehicle, settings, core)
+    if speed is None:
+        del settings["speed"]
+    return Run(bridge, passages, surface, settings, core)
+
+
+def _passages(vehicle: object) -> tuple[Passage, ...]:
+    if isinstance(vehicle, Wheels):
+        return (Passage(vehicle=vehicle),)  # type: ignore[arg-type]
+    if isinstance(vehicle, Passage):
+        return (vehicle,)
+    if isinstance(vehicle, list | tuple):
+        for i, each in enumerate(vehicle):
+            if not isinstance(each, Passage):
+                raise TypeError(f"vehicle[{i}] = {shown(each)}: must be a Passage")
+        if vehicle:
+            return tuple(vehicle)
+    raise TypeError(
+        f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage or a list of Passage"
+    )
+
+
+def _timed(drive: Drive) -> bool:
+    return isinstance(drive, Speeds)
+
+
+def _core_passage(
+    passage: Passage, speed: float | None, drive: Drive, road: Road
+) -> _core._Passage:
+    own = passage.speed if passage.speed is not None else speed
+    lane = passage.lane if passage.lane is not None else int(passage.direction == "left")
+    return (
+        passage.vehicle._core,
+        own,
+        core_drive(passage.drive or drive),
+        passage.direction,
+        passage.entry,
+        lane,
+        (passage.road or road)._core,
+    )
 
 
 def _damping(damping: ArrayLike) -> tuple[list[float], NDArray[np.float64] | None]:

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from spanwise import _core
 from spanwise._checks import number
 from spanwise.bridge import Bridge
+from spanwise.roads import Road
 from spanwise.table import ImpactFactors
-from spanwise.vehicles import Vehicle
+from spanwise.traffic import Passage
+from spanwise.vehicles import AnyVehicle
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -141,37 +143,130 @@ class Responses:
 
 
 @dataclass(frozen=True, eq=False)
-class VehicleMotion:
-    """The vehicle during the crossing; every array has one entry for each instant.
+class Motion:
+    """A coordinate during the crossing.
 
     Attributes
     ----------
-    heave, heave_velocity, heave_acceleration : ndarray, shape (time,)
-        Body, down from its static position [m, m/s, m/s2].
-    pitch, pitch_velocity, pitch_acceleration : ndarray, shape (time,)
-        Body, nose down [rad, rad/s, rad/s2].
+    displacement, velocity, acceleration : ndarray, shape (time,)
+        From the static state [m or rad, per s, per s2]; heave is down, pitch nose down.
+    """
+
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """A body of a vehicle during the crossing.
+
+    Attributes
+    ----------
+    heave : Motion
+        Of its centre of mass, down [m].
+    pitch : Motion
+        Nose down [rad].
+    """
+
+    heave: Motion
+    pitch: Motion
+
+
+@dataclass(frozen=True, eq=False)
+class VehicleMotion:
+    """A vehicle during the crossing; every array has one entry for each instant.
+
+    Heave and pitch are those of its first body; a train has no body, and these are then missing.
+
+    Attributes
+    ----------
+    bodies : tuple of BodyMotion
+        Its bodies; none of a train of forces or masses.
+    hops : tuple of Motion
+        Unsprung masses, down [m], axle by axle; zero for massless axles.
     travel, speed, acceleration : ndarray, shape (time,)
-        Centre of mass along the road, from the left end of the bridge [m, m/s, m/s2].
+        Centre of mass along the road, from the end of the bridge at which the vehicle enters and in
+        its own direction [m, m/s, m/s2].
     axle_positions : ndarray, shape (time, axle)
         From the left end of the bridge [m].
+    elevations : ndarray, shape (time, axle)
+        Of the road under the axles, up [m], averaged over the contact patch.
     suspension_shortenings : ndarray, shape (time, axle)
         Since the static state [m].
     friction : ndarray, shape (time, axle)
         Friction forces in the suspensions [N].
+    stopped : float or None
+        When it came to rest [s], if it did.
     """
 
-    heave: Array
-    heave_velocity: Array
-    heave_acceleration: Array
-    pitch: Array
-    pitch_velocity: Array
-    pitch_acceleration: Array
+    bodies: tuple[BodyMotion, ...]
+    hops: tuple[Motion, ...]
     travel: Array
     speed: Array
     acceleration: Array
     axle_positions: Array
+    elevations: Array
     suspension_shortenings: Array
     friction: Array
+    stopped: float | None
+
+    def _body(self) -> BodyMotion:
+        if not self.bodies:
+            raise AttributeError("a train of forces or masses has no body that heaves or pitches")
+        return self.bodies[0]
+
+    @property
+    def heave(self) -> Array:
+        """First body, down from its static position [m], shape (time,)."""
+        return self._body().heave.displacement
+
+    @property
+    def heave_velocity(self) -> Array:
+        """First body [m/s], shape (time,)."""
+        return self._body().heave.velocity
+
+    @property
+    def heave_acceleration(self) -> Array:
+        """First body [m/s2], shape (time,)."""
+        return self._body().heave.acceleration
+
+    @property
+    def pitch(self) -> Array:
+        """First body, nose down [rad], shape (time,)."""
+        return self._body().pitch.displacement
+
+    @property
+    def pitch_velocity(self) -> Array:
+        """First body [rad/s], shape (time,)."""
+        return self._body().pitch.velocity
+
+    @property
+    def pitch_acceleration(self) -> Array:
+        """First body [rad/s2], shape (time,)."""
+        return self._body().pitch.acceleration
+
+
+@dataclass(frozen=True)
+class LiftOff:
+    """A time during which a wheel was off the road.
+
+    Attributes
+    ----------
+    axle : int
+        Number of the axle from 1, through all vehicles.
+    start, end : float
+        First instant without contact and first with contact again [s].
+    """
+
+    axle: int
+    start: float
+    end: float
+
+    @property
+    def duration(self) -> float:
+        """How long [s]."""
+        return self.end - self.start
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,8 +293,12 @@ class Run(Responses):
     ----------
     bridge : Bridge
         The bridge.
-    truck : Vehicle
-        The vehicle.
+    passages : tuple of Passage
+        The vehicles and how each of them crossed.
+    truck : Vehicle, ForceTrain or MovingMasses
+        The first vehicle.
+    road : Road
+        The road.
     settings : dict
         The settings used, defaults filled in.
     sections : ndarray, shape (section,)
@@ -207,11 +306,13 @@ class Run(Responses):
     frequencies : ndarray, shape (mode,)
         Natural frequencies of the included modes [Hz].
     static_axle_loads : ndarray, shape (axle,)
-        Static axle loads [N].
+        Static axle loads [N], of all vehicles in their order.
     static : Responses
         Responses to the static axle loads at the same positions.
     final_speed : float
-        Speed at the end [m/s].
+        Speed of the first vehicle at the end [m/s].
+    lift_offs : tuple of LiftOff
+        Every time a wheel was off the road.
     steps : int
         Number of time steps.
     """
@@ -219,7 +320,8 @@ class Run(Responses):
     def __init__(
         self,
         bridge: Bridge,
-        truck: Vehicle,
+        passages: tuple[Passage, ...],
+        road: Road,
         settings: dict[str, object],
         core: _core.Crossing,
     ) -> None:
@@ -227,11 +329,13 @@ class Run(Responses):
         super().__init__(lambda name: both(name)[0])
         self.static = Responses(lambda name: both(name)[1])
         self._core = core
-        self.bridge, self.truck, self.settings = bridge, truck, settings
+        self.bridge, self.passages, self.road, self.settings = bridge, passages, road, settings
+        self.truck: AnyVehicle = passages[0].vehicle
         self.sections: Array = core.sections
         self.frequencies: Array = core.omega / (2.0 * np.pi)
         self.static_axle_loads: Array = core.static_loads
-        self.final_speed: float = core.final_speed
+        self.final_speed: float = core.final_speeds[0]
+        self.lift_offs = tuple(LiftOff(axle + 1, *span) for axle, *span in core.lift_offs)
         self.steps: int = core.steps
 
     @cached_property
@@ -245,11 +349,35 @@ class Run(Responses):
         return _frozen(self._core.states("axle_loads"))
 
     @cached_property
+    def vehicles(self) -> tuple[VehicleMotion, ...]:
+        """The motion of each vehicle."""
+        kinds = ("positions", "elevations", "suspension_shortenings", "friction")
+        by_axle = [self._core.states(kind) for kind in kinds]
+        motions, first = [], 0
+        for number_, (passage, stopped) in enumerate(
+            zip(self.passages, self._core.stopped, strict=True)
+        ):
+            columns = _frozen(self._core.motion(number_)).T
+            triples = [Motion(*columns[at : at + 3]) for at in range(0, len(columns) - 3, 3)]
+            axles = len(passage.vehicle.axle_positions)
+            bodies, hops = triples[: len(triples) - axles], triples[len(triples) - axles :]
+            own = slice(first, first + axles)
+            first += axles
+            motions.append(
+                VehicleMotion(
+                    tuple(BodyMotion(*bodies[at : at + 2]) for at in range(0, len(bodies), 2)),
+                    tuple(hops),
+                    *columns[-3:],
+                    *(_frozen(np.ascontiguousarray(each[:, own])) for each in by_axle),
+                    stopped,
+                )
+            )
+        return tuple(motions)
+
+    @property
     def vehicle(self) -> VehicleMotion:
-        """The motion of the vehicle."""
-        body = _frozen(self._core.states("body"))
-        axles = ("positions", "suspension_shortenings", "friction")
-        return VehicleMotion(*body.T, *(_frozen(self._core.states(name)) for name in axles))
+        """The motion of the first vehicle."""
+        return self.vehicles[0]
 
     @cached_property
     def modal(self) -> ModalMotion:

@@ -3,25 +3,29 @@
 use std::sync::Arc;
 
 use faer::Mat;
+use nalgebra::DVector;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::bridge::{Asked, PyBridge};
+use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, interruptible, rows};
 use crate::analysis::{self, Analysis};
-use crate::course::Drive;
+use crate::course::{Braking, Direction, Drive, Passage};
 use crate::crossing::{Damping, Settings};
 use crate::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::error::Error;
 use crate::influence::Quantity;
 use crate::recovery::Recovery;
+use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
 #[pyclass(frozen, module = "spanwise._core")]
 pub struct Crossing {
     analysis: Arc<Analysis>,
     outcome: analysis::Outcome,
+    vehicles: Vec<Vehicle>,
 }
 
 const QUANTITIES: [(&str, Quantity); 6] = [
@@ -76,7 +80,7 @@ impl Crossing {
             "coordinates" => (&history.a, history.modes),
             "velocities" => (&history.a_dot, history.modes),
             "accelerations" => (&history.a_ddot, history.modes),
-            "motion" => (&history.motion, history.motion_width()),
+            "elevations" => (&history.elevations, history.axles),
             "suspension_shortenings" => (&history.shortenings, history.axles),
             "friction" => (&history.friction, history.axles),
             _ => return Err(Error::input("states", format!("\"{name}\""), "no such state").into()),
@@ -109,9 +113,44 @@ impl Crossing {
         self.outcome.history.len() - 1
     }
 
+    /// Speed of each vehicle at the end.
     #[getter]
-    fn final_speed(&self) -> f64 {
-        self.outcome.history.final_speed(0)
+    fn final_speeds(&self) -> Vec<f64> {
+        (0..self.vehicles.len()).map(|v| self.outcome.history.final_speed(v)).collect()
+    }
+
+    /// When each vehicle came to rest, if it did.
+    #[getter]
+    fn stopped(&self) -> Vec<Option<f64>> {
+        self.outcome.history.vehicles.iter().map(|vehicle| vehicle.stopped).collect()
+    }
+
+    /// Axle, beginning and end of every time a wheel was off the road.
+    #[getter]
+    fn lift_offs(&self) -> Vec<(usize, f64, f64)> {
+        self.outcome.history.lift_offs().into_iter().map(|l| (l.axle, l.from, l.to)).collect()
+    }
+
+    /// Heave and pitch of every body of a vehicle, the displacement of the mass of every axle, and the travel, each with
+    /// its first and second derivative, at every instant.
+    fn motion<'py>(&self, py: Python<'py>, vehicle: usize) -> PyResult<Matrix<'py>> {
+        let (history, assembly) = (&self.outcome.history, self.vehicles[vehicle].assembly());
+        let mut lines: Vec<Option<&DVector<f64>>> = assembly.bodies.iter().flatten().map(Some).collect();
+        lines.extend(assembly.hops.iter().map(Option::as_ref));
+        let mut values = Vec::with_capacity(history.len() * 3 * (lines.len() + 1));
+        let columns = history.vehicles[vehicle].motion.clone();
+        for row in history.motion.chunks_exact(history.motion_width()) {
+            let own = &row[columns.clone()];
+            for line in &lines {
+                for derivative in 0..3 {
+                    let coordinates = own.iter().skip(derivative).step_by(3);
+                    let sum = line.map_or(0.0, |line| line.iter().zip(coordinates).map(|(b, q)| b * q).sum());
+                    values.push(sum);
+                }
+            }
+            values.extend(&own[own.len() - 3..]);
+        }
+        rows(py, values, 3 * (lines.len() + 1))
     }
 
     /// Extremes of a quantity: columns value, time, front-axle position and partner for each of the dynamic largest,
@@ -165,36 +204,65 @@ impl Crossing {
     }
 }
 
+/// How a vehicle is driven: its name, and the numbers that go with it.
+type PyDrive = (String, Vec<f64>, Vec<f64>);
+
+/// Vehicle, speed, drive, direction, entry, lane, road.
+type PyPassage<'py> =
+    (PyRef<'py, PyVehicle>, Option<f64>, Option<PyDrive>, String, f64, i64, Option<PyRef<'py, PyRoad>>);
+
+fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
+    match (name.as_str(), &first[..]) {
+        ("constant-speed", []) => Ok(Drive::ConstantSpeed),
+        ("constant-traction", []) => Ok(Drive::ConstantTraction),
+        ("acceleration", &[acceleration]) => Ok(Drive::Acceleration(acceleration)),
+        ("speeds", _) => Ok(Drive::Speeds { times: first, speeds: second }),
+        ("braking", &[deceleration, from, ramp, adhesion]) => {
+            Ok(Drive::Braking(Braking { deceleration, from, ramp, adhesion }))
+        }
+        _ => Err(Error::input("drive", format!("\"{name}\""), "must be constant-speed or constant-traction")),
+    }
+}
+
+fn passage((vehicle, speed, driven, direction, entry, lane, road): PyPassage<'_>) -> Result<Passage, Error> {
+    let direction = match direction.as_str() {
+        "right" => Direction::Right,
+        "left" => Direction::Left,
+        _ => return Err(Error::input("direction", format!("\"{direction}\""), "must be right or left")),
+    };
+    Ok(Passage {
+        vehicle: vehicle.0.clone(),
+        speed,
+        drive: driven.map(drive).transpose()?,
+        direction,
+        entry,
+        lane,
+        road: road.map(|road| Arc::new(road.0.clone())),
+    })
+}
+
 /// Computes one crossing.
 #[pyfunction]
-#[pyo3(signature = (bridge, vehicle, *, speed, drive, modes, damping, damping_matrix, beta, step, approach, tail, gravity,
-                    sections, recovery))]
+#[pyo3(signature = (bridge, passages, *, modes, damping, damping_matrix, beta, step, approach, ramp, tail, gravity,
+                    lift_off, sections, recovery))]
 #[allow(clippy::too_many_arguments)] // one per argument that Python names
 pub fn cross<'py>(
     py: Python<'py>,
     bridge: &PyBridge,
-    vehicle: &PyVehicle,
-    speed: f64,
-    drive: &str,
+    passages: Vec<PyPassage<'py>>,
     modes: usize,
     damping: Vec<f64>,
     damping_matrix: Option<PyReadonlyArray2<'py, f64>>,
     beta: f64,
     step: Option<f64>,
     approach: f64,
+    ramp: f64,
     tail: f64,
     gravity: f64,
+    lift_off: bool,
     sections: Option<Vec<f64>>,
     recovery: &str,
 ) -> PyResult<Crossing> {
-    let drive = match drive {
-        "constant-speed" => Drive::ConstantSpeed,
-        "constant-traction" => Drive::ConstantTraction,
-        _ => {
-            let allowed = "must be constant-speed or constant-traction";
-            return Err(Error::input("drive", format!("\"{drive}\""), allowed).into());
-        }
-    };
     let recovery = match recovery {
         "force-summation" => Recovery::ForceSummation,
         "force-summation-by-rates" => Recovery::ForceSummationByRates,
@@ -211,11 +279,14 @@ pub fn cross<'py>(
             Damping::Viscous(Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[[i, j]]))
         }
     };
-    let settings = Settings { drive, beta, step, approach, tail, gravity, ..Settings::at_speed(speed) };
+    let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
+    // Every passage says its own speed or brings it with its drive.
+    let settings = Settings { beta, step, approach, ramp, tail, gravity, lift_off, ..Settings::at_speed(f64::NAN) };
     let (analysis, outcome) = interruptible(py, |go_on| {
         let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery }, go_on)?;
-        let outcome = analysis.cross(&vehicle.0, &settings, go_on)?;
+        let outcome = analysis.cross_all(&passages, &settings, go_on)?;
         Ok((analysis, outcome))
     })?;
-    Ok(Crossing { analysis, outcome })
+    let vehicles = passages.into_iter().map(|passage| passage.vehicle).collect();
+    Ok(Crossing { analysis, outcome, vehicles })
 }
