@@ -2,6 +2,7 @@
 
 mod bridge;
 mod crossing;
+mod road;
 mod vehicle;
 
 use std::time::{Duration, Instant};
@@ -76,6 +77,8 @@ mod _core {
     use super::bridge::PyBridge;
     #[pymodule_export]
     use super::crossing::{Crossing, cross};
+    #[pymodule_export]
+    use super::road::{PyRoad, road_classes};
     #[pymodule_export]
     use super::vehicle::PyVehicle;
 

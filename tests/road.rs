@@ -586,12 +586,12 @@ fn bad_values_are_refused() {
         (make(&[0.0, 1.0, 1.0, 2.0], &r[..4], None), ["x[2] = 1 m", "greater than x[1] = 1 m"]),
         (make(&[0.0, 2.0, 1.0, 3.0], &r[..4], None), ["x[2] = 1 m", "greater than x[1] = 2 m"]),
         (make(&[0.0, 1.0, f64::NAN, 3.0], &r[..4], None), ["x[2] = NaN", "finite"]),
-        (make(&x, &[0.0, f64::INFINITY, 0.0, 0.0, 0.0], None), ["elevation[1] = inf", "finite"]),
+        (make(&x, &[0.0, f64::INFINITY, 0.0, 0.0, 0.0], None), ["elevations[1] = inf", "finite"]),
         (make(&[0.0, 1.0, 2.0, 3.0, 9.0], &r, None), ["x[4] = 9 m: 6 m", "max_gap = 5 m"]),
         (make(&x, &r, Some(0.5)), ["x[1] = 1 m: 1 m", "max_gap = 0.5 m"]),
         (make(&x, &r, Some(0.0)), ["max_gap = 0", "greater than 0"]),
         (make(&x[..3], &r[..3], None), ["x = 3 points", "4 or more"]),
-        (make(&x, &r[..4], None), ["elevation = 4 values", "one for each x, 5"]),
+        (make(&x, &r[..4], None), ["elevations = 4 values", "one for each x, 5"]),
         (refusal(Patch::new(-0.1)), ["contact_patch = -0.1", "0 or more"]),
         (refusal(Spectrum::new(0.0, 2.0, BAND)), ["G = 0", "greater than 0"]),
         (refusal(Spectrum::new(GOOD, -1.0, BAND)), ["waviness = -1", "0 or more"]),
@@ -603,7 +603,7 @@ fn bad_values_are_refused() {
         (refusal(Feature::plateau(0.0, 1.0, 0.1, 0.6, patch(0.0))), ["edge = 0.6 m", "half the length, 0.5 m"]),
         (refusal(Feature::plateau(0.0, 0.0, 0.1, 0.0, patch(0.0))), ["length = 0", "greater than 0"]),
         (refusal(Feature::step(f64::NAN, 0.1, patch(0.0))), ["at = NaN", "finite"]),
-        (refusal(golden_car::iri(&Road::smooth(), 0.0, 10.0)), ["end = 10 m", "11 to 1000000 m beyond start"]),
+        (refusal(golden_car::iri(&Road::smooth(), 0.0, 10.0)), ["end = 10 m", "11 to 100000 m beyond start"]),
     ] {
         assert!(parts.iter().all(|part| text.contains(part)), "{text}");
     }

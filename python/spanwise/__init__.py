@@ -1,31 +1,59 @@
 """What vehicles do to bridges: dynamic response by a few modes and force summation."""
 
-from spanwise import vehicles
+from spanwise import roads, vehicles
 from spanwise._core import __version__
 from spanwise.bridge import Bridge, Modes
 from spanwise.case import Case
 from spanwise.crossing import cross
-from spanwise.run import Envelope, Extremes, Run
+from spanwise.roads import (
+    ISO8608,
+    Bump,
+    Camber,
+    Joint,
+    Pothole,
+    Profile,
+    Ramp,
+    Smooth,
+    Step,
+)
+from spanwise.run import Envelope, Extremes, LiftOff, Run
 from spanwise.table import ImpactFactors
+from spanwise.traffic import Acceleration, Braking, Passage, Speeds, convoy
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 __all__ = [
+    "Acceleration",
     "Axle",
     "Body",
+    "Braking",
     "Bridge",
+    "Bump",
+    "Camber",
     "Case",
     "Envelope",
     "Extremes",
     "ForceTrain",
     "Hinge",
+    "ISO8608",
     "ImpactFactors",
+    "Joint",
+    "LiftOff",
     "Modes",
     "MovingMasses",
+    "Passage",
+    "Pothole",
+    "Profile",
+    "Ramp",
     "Run",
+    "Smooth",
+    "Speeds",
     "Spring",
+    "Step",
     "Vehicle",
     "__version__",
+    "convoy",
     "cross",
+    "roads",
     "vehicles",
 ]

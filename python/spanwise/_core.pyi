@@ -3,7 +3,7 @@ from typing import Final, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Bridge", "Crossing", "Vehicle", "__version__", "cross"]
+__all__ = ["Bridge", "Crossing", "Road", "Vehicle", "__version__", "cross", "road_classes"]
 
 __version__: Final[str]
 
@@ -79,6 +79,54 @@ class Vehicle:
     def coordinates(self) -> list[str]: ...
     def static_loads(self, gravity: float) -> NDArray[np.float64]: ...
     def frequencies(self, locked: bool) -> NDArray[np.float64]: ...
+
+@final
+class Road:
+    @staticmethod
+    def sum(parts: list[Road]) -> Road: ...
+    @staticmethod
+    def random(
+        *,
+        roughness: float,
+        waviness: float,
+        band: tuple[float, float],
+        contact_patch: float,
+        period: float | None,
+        seed: int,
+        sample: int,
+    ) -> Road: ...
+    @staticmethod
+    def profile(
+        *,
+        x: NDArray[np.float64],
+        elevation: NDArray[np.float64],
+        detrend: bool,
+        contact_patch: float,
+        max_gap: float | None,
+    ) -> Road: ...
+    @staticmethod
+    def step(at: float, height: float, contact_patch: float) -> Road: ...
+    @staticmethod
+    def ramp(start: float, end: float, height: float, contact_patch: float) -> Road: ...
+    @staticmethod
+    def plateau(
+        at: float, length: float, height: float, edge: float, contact_patch: float
+    ) -> Road: ...
+    @staticmethod
+    def camber(start: float, end: float, rise: float, contact_patch: float) -> Road: ...
+    @property
+    def is_smooth(self) -> bool: ...
+    @property
+    def ends(self) -> tuple[float, float]: ...
+    @property
+    def period(self) -> float: ...
+    def check_holds(self, start: float, end: float) -> None: ...
+    def at(
+        self, x: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    def iri(self, start: float, end: float) -> float: ...
+
+def road_classes() -> list[tuple[str, float, float | None]]: ...
 
 @final
 class Crossing:

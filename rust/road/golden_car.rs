@@ -62,7 +62,7 @@ pub fn response(road: &Road, start: f64, end: f64) -> Result<Vec<f64>, Error> {
 }
 
 /// Longest section [m].
-const MOST: f64 = 1e6;
+const MOST: f64 = 1e5;
 
 /// Transition over a step, and the effect of a unit slope during it: blocks of the exponential of both together.
 fn step_matrices() -> (SMatrix<f64, 4, 4>, SVector<f64, 4>) {

@@ -83,14 +83,14 @@ impl Profile {
 fn check(x: &[f64], elevation: &[f64], max_gap: Option<f64>) -> Result<(), Error> {
     if x.len() != elevation.len() {
         let allowed = format!("must be one for each x, {}", x.len());
-        return Err(Error::input("elevation", format!("{} values", elevation.len()), allowed));
+        return Err(Error::input("elevations", format!("{} values", elevation.len()), allowed));
     }
     if x.len() < FEWEST {
         return Err(Error::input("x", format!("{} points", x.len()), format!("must be {FEWEST} or more")));
     }
     for (k, (x, elevation)) in x.iter().zip(elevation).enumerate() {
         finite(format!("x[{k}]"), *x)?;
-        finite(format!("elevation[{k}]"), *elevation)?;
+        finite(format!("elevations[{k}]"), *elevation)?;
     }
     for (k, pair) in x.windows(2).enumerate() {
         if pair[1] <= pair[0] {

@@ -1,0 +1,295 @@
+"""What every road can do, and the two that need no data: the smooth one and sums."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spanwise._checks import array, number, shown
+from spanwise._core import Road as CoreRoad
+from spanwise.roads import roughness
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Usual length of road that a tyre averages [m].
+CONTACT_PATCH: Final = 0.24
+
+
+@dataclass(frozen=True)
+class Road:
+    """A road surface: elevation, slope and curvature at any x.
+
+    x [m] runs from the left end of the bridge and is negative on the left approach; elevation [m]
+    is positive up. Roads cannot be changed; they add up with ``+``.
+
+    Each is averaged over the length of road that a tyre touches, its `contact_patch`, before
+    anything looks at it. `iri`, `psd` and `iso_class` describe the surface itself, without that.
+
+    Attributes
+    ----------
+    kind : str
+        What kind of road it is, as in a case file.
+    """
+
+    kind: ClassVar[str]
+
+    if TYPE_CHECKING:
+
+        @property
+        def _core(self) -> CoreRoad: ...
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_core", self._made())
+
+    def _made(self) -> CoreRoad:
+        raise TypeError("Road stands for all kinds of roads; make one of them, such as Smooth()")
+
+    def _set(self, **values: object) -> None:
+        """Keep values as they were understood."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        return _rebuilt, (type(self), given)
+
+    def __add__(self, other: object) -> Road:
+        """Both on top of each other."""
+        if not isinstance(other, Road):
+            return NotImplemented
+        return total([self, other])
+
+    @property
+    def arguments(self) -> dict[str, Any] | list[dict[str, Any]]:
+        """Plain values that `from_table` makes this road of: a table, or a list of them for a sum.
+
+        What is None is left out.
+        """
+        table: dict[str, Any] = {"kind": self.kind}
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if isinstance(value, np.ndarray):
+                value = value.tolist()
+            if value is not None:
+                table[each.name] = list(value) if isinstance(value, tuple) else value
+        return table
+
+    @property
+    def surface(self) -> Road:
+        """The same road without contact patch."""
+        if getattr(self, "contact_patch", 0.0) == 0.0:
+            return self
+        changes: dict[str, Any] = {"contact_patch": 0.0}
+        return replace(self, **changes)
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether there is no roughness."""
+        return self._core.is_smooth
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last x at which the road is known [m]; infinite where nothing was measured."""
+        return self._core.ends
+
+    @property
+    def repeats_after(self) -> float:
+        """Period of a random road [m]; ``inf`` for others."""
+        return self._core.period
+
+    def elevation(self, x: ArrayLike) -> Array:
+        """Elevation, averaged over the contact patch.
+
+        Parameters
+        ----------
+        x : array_like
+            Positions [m], of any shape.
+
+        Returns
+        -------
+        ndarray
+            Elevation, positive up [m], shape of `x`.
+
+        Raises
+        ------
+        ValueError
+            If the road is not known there; a random one is, and repeats after its period.
+        """
+        return self._at(x, 0)
+
+    def slope(self, x: ArrayLike) -> Array:
+        """Slope [-], the derivative of `elevation`, shape of `x` [m]; see there."""
+        return self._at(x, 1)
+
+    def curvature(self, x: ArrayLike) -> Array:
+        """Curvature [1/m], the derivative of `slope`, shape of `x` [m]; see `elevation`."""
+        return self._at(x, 2)
+
+    def _at(self, x: ArrayLike, derivative: int) -> Array:
+        places = array("x", x)
+        if places.size > 0:
+            self._core.check_holds(float(places.min()), float(places.max()))
+        return self._core.at(places.ravel())[derivative].reshape(places.shape)
+
+    def iri(self, start: float, end: float) -> float:
+        """International roughness index of the surface from `start` to `end` [m].
+
+        Parameters
+        ----------
+        start, end : float
+            Ends of the section [m], at least 11 m apart.
+
+        Returns
+        -------
+        float
+            The index [m/km].
+
+        Raises
+        ------
+        ValueError
+            If the section is too short or too long, or the road is not known on it.
+
+        Notes
+        -----
+        The mean rectified slope between body and axle of the golden car (tyre 653 /s2, suspension
+        63.3 /s2, axle 0.15 of the body's mass, damping 6 /s) at 80 km/h, over the moving average
+        of 250 mm of the profile, starting with the mean slope of the first 11 m.
+
+        References
+        ----------
+        M. W. Sayers, "On the calculation of International Roughness Index from longitudinal road
+        profile", Transportation Research Record 1501 (1995) 1-12.
+        """
+        return 1e3 * self.surface._core.iri(number("start", start), number("end", end))
+
+    def psd(
+        self, start: float, end: float, *, segment: float | None = None, spacing: float = 0.05
+    ) -> tuple[Array, Array]:
+        """Power spectral density of the surface from `start` to `end` [m].
+
+        Parameters
+        ----------
+        start, end : float
+            Ends of the section [m].
+        segment : float, optional
+            Length of the segments whose periodograms are averaged [m], a quarter of the section
+            without; wave numbers are as far apart as one wave per segment.
+        spacing : float, optional
+            Distance of the samples [m]; wave numbers go up to half a wave per sample.
+
+        Returns
+        -------
+        wave_numbers : ndarray
+            Wave numbers n [cycle/m], without 0, shape (waves,).
+        density : ndarray
+            One-sided density G_d(n) [m3], whose integral over n is the variance, shape (waves,).
+
+        Raises
+        ------
+        ValueError
+            If the section cannot be divided so, or the road is not known on it.
+
+        Notes
+        -----
+        Welch's method: segments that overlap by half, less their mean, under Hann windows. Its
+        resolution is about two wave numbers, so that the first of them are rough.
+        """
+        return roughness.psd(self.surface.elevation, start, end, segment, spacing)
+
+    def iso_class(
+        self, start: float, end: float, *, band: tuple[float, float] = roughness.ISO_BAND
+    ) -> roughness.IsoClass:
+        """Class of the surface after ISO 8608 from `start` to `end` [m].
+
+        Parameters
+        ----------
+        start, end : float
+            Ends of the section [m].
+        band : tuple of float, optional
+            Wave numbers that are looked at [cycle/m].
+
+        Returns
+        -------
+        IsoClass
+            The fitted G_d(n0) [m3] with letter and limits of its class.
+
+        Raises
+        ------
+        ValueError
+            If nothing is left of the band or of the road; the section must hold about twelve of
+            the longest waves that count, so that shorter sections look at less of the band.
+
+        Notes
+        -----
+        Of `psd`, the mean of G_d(n) (n/n0)^2 is taken in every octave of the band, and of these
+        the geometric mean: a straight line of slope -2 in logarithmic axes, all octaves alike.
+        """
+        return roughness.fitted(*self.psd(start, end), band)
+
+
+@dataclass(frozen=True)
+class Smooth(Road):
+    """The road without any roughness."""
+
+    kind: ClassVar[str] = "smooth"
+
+    def _made(self) -> CoreRoad:
+        return CoreRoad.sum([])
+
+
+@dataclass(frozen=True)
+class Sum(Road):
+    """Several roads on top of each other, as ``+`` makes them.
+
+    Parameters
+    ----------
+    parts : sequence of Road
+        What adds up.
+    """
+
+    kind: ClassVar[str] = "sum"
+
+    parts: tuple[Road, ...]
+
+    def _made(self) -> CoreRoad:
+        if not isinstance(self.parts, list | tuple):
+            raise ValueError(f"parts = {shown(self.parts)}: must be a list of roads")
+        for k, part in enumerate(self.parts):
+            if not isinstance(part, Road):
+                raise ValueError(f"parts[{k}] = {shown(part)}: must be a road")
+        self._set(parts=tuple(self.parts))
+        return CoreRoad.sum([part._core for part in self.parts])
+
+    @property
+    def arguments(self) -> list[dict[str, Any]]:
+        """The tables of all parts."""
+        tables: list[dict[str, Any]] = []
+        for part in self.parts:
+            found = part.arguments
+            tables += found if isinstance(found, list) else [found]
+        return tables
+
+    @property
+    def surface(self) -> Road:
+        """The sum of the parts without contact patch."""
+        return Sum(tuple(part.surface for part in self.parts))
+
+
+def total(roads: Iterable[Road]) -> Road:
+    """All of them on top of each other: what is smooth adds nothing, and one alone is no sum."""
+    parts: list[Road] = []
+    for road in roads:
+        parts += road.parts if isinstance(road, Sum) else [road]
+    rough = tuple(part for part in parts if not part.is_smooth)
+    if len(rough) > 1:
+        return Sum(rough)
+    return rough[0] if rough else Smooth()
+
+
+def _rebuilt(kind: type[Road], given: dict[str, Any]) -> Road:
+    return kind(**given)

@@ -1,0 +1,214 @@
+"""Measured roads."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass
+from pathlib import Path
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spanwise import _core
+from spanwise._checks import flag, number, numbers, pairs, shown, word
+from spanwise._keys import suggestion
+from spanwise.roads.base import CONTACT_PATCH, Road
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Number or name of a column.
+Column: TypeAlias = int | str
+
+
+@dataclass(frozen=True, eq=False)
+class Profile(Road):
+    """A measured profile: a cubic spline through points at any spacing.
+
+    Parameters
+    ----------
+    x : array_like
+        Positions [m], at least 4, strictly increasing; shape (points,).
+    elevations : array_like
+        Elevations [m], positive up; shape (points,).
+    detrend : bool, optional
+        Whether to take off the least-squares line, such as a gradient or the height above a datum.
+    contact_patch : float, optional
+        Length of road that a tyre averages [m]; 0 for none, where the measurement did so already.
+    max_gap : float, optional
+        Largest distance of neighbouring points [m]; without, five times the median one.
+
+    Raises
+    ------
+    ValueError
+        If points are out of order, double, too far apart, too few or not finite, naming the first.
+
+    Notes
+    -----
+    Of the curves through the points the spline is the smoothest, with continuous curvature, and it
+    keeps waves down to a few points long better than cubics with slopes from neighbouring points,
+    which flatten them. Its third derivative is continuous at the second point and the last but one
+    ("not a knot"). The road is known from the first point to the last. Where half a contact patch
+    reaches beyond, the tangent at the end goes on.
+    """
+
+    kind: ClassVar[str] = "profile"
+
+    x: Array
+    elevations: Array
+    _: KW_ONLY
+    detrend: bool = False
+    contact_patch: float = CONTACT_PATCH
+    max_gap: float | None = None
+
+    def _made(self) -> _core.Road:
+        x, elevations = _column("x", self.x), _column("elevations", self.elevations)
+        self._set(
+            x=x,
+            elevations=elevations,
+            detrend=flag("detrend", self.detrend),
+            contact_patch=number("contact_patch", self.contact_patch),
+            max_gap=None if self.max_gap is None else number("max_gap", self.max_gap),
+        )
+        return _core.Road.profile(
+            x=x,
+            elevation=elevations,
+            detrend=self.detrend,
+            contact_patch=self.contact_patch,
+            max_gap=self.max_gap,
+        )
+
+    @classmethod
+    def read_csv(
+        cls,
+        path: str | Path,
+        *,
+        columns: tuple[Column, Column] = (0, 1),
+        delimiter: str = ",",
+        scale: tuple[float, float] = (1.0, 1.0),
+        detrend: bool = False,
+        contact_patch: float = CONTACT_PATCH,
+        max_gap: float | None = None,
+    ) -> Profile:
+        """A profile from a file of separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file, UTF-8 text. Empty lines and lines that begin with ``#`` are passed over, and
+            so is the first line if it holds names.
+        columns : tuple of int or str, optional
+            Numbers, from 0, or names of the columns with x and elevation.
+        delimiter : str, optional
+            What separates the columns.
+        scale : tuple of float, optional
+            What x and elevation are multiplied by to give metres, such as ``(1.0, 1e-3)`` for
+            elevations in millimetres.
+        detrend, contact_patch, max_gap
+            As for `Profile`.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        ValueError
+            If it holds no profile, naming the line, or a value is not allowed.
+        """
+        factors = numbers("scale", scale)
+        if len(factors) != 2:
+            raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
+        values = np.array(list(_rows(Path(path), columns, delimiter)), dtype=float).reshape(-1, 2)
+        x, elevations = values.T * np.array(factors)[:, None]
+        return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Profile):
+            return NotImplemented
+        return self._identity() == other._identity()
+
+    def __hash__(self) -> int:
+        return hash(self._identity())
+
+    def __repr__(self) -> str:
+        first, last = self.ends
+        return (
+            f"Profile({len(self.x)} points from {first} m to {last} m, detrend={self.detrend}, "
+            f"contact_patch={self.contact_patch}, max_gap={self.max_gap})"
+        )
+
+    def _identity(self) -> tuple[object, ...]:
+        points = (self.x.tobytes(), self.elevations.tobytes())
+        return (*points, self.detrend, self.contact_patch, self.max_gap)
+
+
+def _column(key: str, value: ArrayLike) -> Array:
+    """Numbers in a row that cannot be changed; whether they are finite is checked one by one."""
+    try:
+        values = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{key} = {shown(value)}: must be a list of numbers") from None
+    if values.ndim != 1:
+        raise ValueError(f"{key} = {shown(value)}: must be a list of numbers")
+    values.setflags(write=False)
+    return values
+
+
+def _rows(path: Path, columns: object, delimiter: object) -> Iterator[tuple[float, float]]:
+    """x and elevation of each line."""
+    wanted = pairs("columns", [columns])[0]
+    text = word("delimiter", delimiter)
+    if len(text) != 1:
+        raise ValueError(f"delimiter = {shown(delimiter)}: must be one character")
+    places: tuple[int, int] | None = None
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        reader = csv.reader(file, delimiter=text)
+        try:
+            for row in reader:
+                cells = [cell.strip() for cell in row]
+                if not any(cells) or cells[0].startswith("#"):
+                    continue
+                where = f"{path}, line {reader.line_num}"
+                if places is None:
+                    names = not any(map(_is_number, cells))
+                    places = _places(wanted, cells if names else None, where)
+                    if names:
+                        continue
+                yield _number(cells, places[0], where), _number(cells, places[1], where)
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise ValueError(f"{path}: not a file of separated values: {error}") from None
+
+
+def _places(wanted: tuple[object, object], names: list[str] | None, where: str) -> tuple[int, int]:
+    """Numbers of both columns."""
+    found = []
+    for k, column in enumerate(wanted):
+        key = f"columns[{k}] = {shown(column)}"
+        if isinstance(column, str):
+            if names is None:
+                raise ValueError(f"{where}: {key}: the file has no line of names; give a number")
+            if column not in names:
+                allowed = f"must be one of {', '.join(names)}{suggestion(column, names)}"
+                raise ValueError(f"{where}: {key}: {allowed}")
+            found.append(names.index(column))
+        elif isinstance(column, int) and not isinstance(column, bool) and column >= 0:
+            found.append(column)
+        else:
+            raise ValueError(f"{key}: must be a column's name or its number from 0")
+    return found[0], found[1]
+
+
+def _number(cells: list[str], column: int, where: str) -> float:
+    if column >= len(cells):
+        raise ValueError(f"{where}: {len(cells)} columns, column {column} (from 0) is missing")
+    if not _is_number(cells[column]):
+        raise ValueError(f"{where}: {shown(cells[column])} in column {column} is not a number")
+    return float(cells[column])
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

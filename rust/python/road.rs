@@ -1,0 +1,119 @@
+//! Roads for Python.
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use super::Vector;
+use crate::error::Error;
+use crate::road::feature::Feature;
+use crate::road::patch::Patch;
+use crate::road::profile::Profile;
+use crate::road::random::Synthesis;
+use crate::road::spectrum::{Class, Spectrum};
+use crate::road::{self, golden_car};
+
+/// A road surface.
+#[pyclass(name = "Road", frozen, module = "spanwise._core")]
+pub struct PyRoad(pub road::Road);
+
+fn single(feature: impl FnOnce(Patch) -> Result<Feature, Error>, contact_patch: f64) -> PyResult<PyRoad> {
+    Ok(PyRoad(feature(Patch::new(contact_patch)?)?.into()))
+}
+
+#[pymethods]
+impl PyRoad {
+    #[staticmethod]
+    fn sum(parts: Vec<Bound<'_, PyRoad>>) -> Self {
+        PyRoad(road::Road::sum(parts.iter().map(|part| part.get().0.clone())))
+    }
+
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)] // one per argument that Python names
+    #[pyo3(signature = (*, roughness, waviness, band, contact_patch, period, seed, sample))]
+    fn random(
+        py: Python<'_>,
+        roughness: f64,
+        waviness: f64,
+        band: [f64; 2],
+        contact_patch: f64,
+        period: Option<f64>,
+        seed: u64,
+        sample: u64,
+    ) -> PyResult<Self> {
+        let spectrum = Spectrum::new(roughness, waviness, band)?;
+        let patch = Patch::new(contact_patch)?;
+        let random = py.detach(|| Ok::<_, Error>(Synthesis::new(spectrum, patch, period)?.road(seed, sample)))?;
+        Ok(PyRoad(random.into()))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, x, elevation, detrend, contact_patch, max_gap))]
+    fn profile(
+        x: PyReadonlyArray1<'_, f64>,
+        elevation: PyReadonlyArray1<'_, f64>,
+        detrend: bool,
+        contact_patch: f64,
+        max_gap: Option<f64>,
+    ) -> PyResult<Self> {
+        let (x, elevation) = (x.as_array().to_vec(), elevation.as_array().to_vec());
+        let profile = Profile::new(x, elevation, detrend, Patch::new(contact_patch)?, max_gap)?;
+        Ok(PyRoad(profile.into()))
+    }
+
+    #[staticmethod]
+    fn step(at: f64, height: f64, contact_patch: f64) -> PyResult<Self> {
+        single(|patch| Feature::step(at, height, patch), contact_patch)
+    }
+
+    #[staticmethod]
+    fn ramp(start: f64, end: f64, height: f64, contact_patch: f64) -> PyResult<Self> {
+        single(|patch| Feature::ramp(start, end, height, patch), contact_patch)
+    }
+
+    #[staticmethod]
+    fn plateau(at: f64, length: f64, height: f64, edge: f64, contact_patch: f64) -> PyResult<Self> {
+        single(|patch| Feature::plateau(at, length, height, edge, patch), contact_patch)
+    }
+
+    #[staticmethod]
+    fn camber(start: f64, end: f64, rise: f64, contact_patch: f64) -> PyResult<Self> {
+        single(|patch| Feature::camber(start, end, rise, patch), contact_patch)
+    }
+
+    #[getter]
+    fn is_smooth(&self) -> bool {
+        self.0.is_smooth()
+    }
+
+    #[getter]
+    fn ends(&self) -> (f64, f64) {
+        self.0.ends().into()
+    }
+
+    #[getter]
+    fn period(&self) -> f64 {
+        self.0.period()
+    }
+
+    fn check_holds(&self, start: f64, end: f64) -> PyResult<()> {
+        Ok(self.0.check_holds(start, end)?)
+    }
+
+    /// Elevation, slope and curvature.
+    fn at<'py>(&self, py: Python<'py>, x: PyReadonlyArray1<'_, f64>) -> (Vector<'py>, Vector<'py>, Vector<'py>) {
+        let x = x.as_array().to_vec();
+        let points: Vec<road::Point> = py.detach(|| x.iter().map(|&x| self.0.at(x)).collect());
+        let column = |of: fn(&road::Point) -> f64| points.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
+        (column(|p| p.elevation), column(|p| p.slope), column(|p| p.curvature))
+    }
+
+    fn iri(&self, py: Python<'_>, start: f64, end: f64) -> PyResult<f64> {
+        Ok(py.detach(|| golden_car::iri(&self.0, start, end))?)
+    }
+}
+
+/// Classes of ISO 8608: letter, geometric mean and upper limit.
+#[pyfunction]
+pub fn road_classes() -> Vec<(String, f64, Option<f64>)> {
+    Class::ALL.into_iter().map(|class| (format!("{class:?}"), class.mean(), class.upper())).collect()
+}
