@@ -4,10 +4,11 @@
 mod problems;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use problems::vehicles::{articulated_5_axle, half_car};
 use problems::{kishan_bridge, kishan_vehicle, undamped};
 use spanwise::analysis::Analysis;
-use spanwise::course::Drive;
-use spanwise::crossing::{Settings, cross};
+use spanwise::course::{Direction, Drive, Passage};
+use spanwise::crossing::{Settings, cross, cross_all};
 use spanwise::flexibility::Flexibility;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
@@ -45,5 +46,29 @@ fn kishan_1973(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, kishan_1973);
+/// Every vehicle on the bridge of the example at 22.86 m/s in steps of 1 ms, three modes, smooth road, no approach.
+fn vehicles(c: &mut Criterion) {
+    let bridge = kishan_bridge();
+    let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
+    let analysis = Analysis::new(&bridge, modes, &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
+    let settings = Settings { step: Some(1e-3), ..Settings::at_speed(22.86) };
+    let opposing = Passage { direction: Direction::Left, lane: 1, ..Passage::of(half_car()) };
+    let cases = [
+        ("half_car", vec![Passage::of(half_car())]),
+        ("articulated_5_axle", vec![Passage::of(articulated_5_axle())]),
+        ("two_vehicles_opposing", vec![Passage::of(half_car()), opposing]),
+    ];
+    let mut group = c.benchmark_group("crossing");
+    for (name, passages) in cases {
+        let history = cross_all(&analysis.model, &passages, &settings, &mut || true).unwrap();
+        println!("{name}: {} steps, {} axles", history.len() - 1, history.axles);
+        group.bench_function(name, |b| b.iter(|| analysis.cross_all(&passages, &settings, &mut || true).unwrap()));
+        group.bench_function(format!("{name}/steps"), |b| {
+            b.iter(|| cross_all(&analysis.model, &passages, &settings, &mut || true).unwrap());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, kishan_1973, vehicles);
 criterion_main!(benches);

@@ -61,6 +61,11 @@ impl Motion {
 
     /// Way, speed and acceleration at time t [s].
     pub fn at(&self, t: f64) -> Coordinate<f64> {
+        if let [(from, c)] = self.pieces[..]
+            && c.a == 0.0
+        {
+            return Coordinate { x: c.x + c.v * (t - from), ..c };
+        }
         let after = self.pieces.partition_point(|piece| piece.0 <= t);
         let Some(i) = after.checked_sub(1) else {
             let (from, first) = self.pieces[0];

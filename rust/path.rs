@@ -71,7 +71,7 @@ impl Pavement<'_> {
     fn at(&self, x: f64) -> Surface<f64> {
         let way = self.direction * (x - self.start);
         if self.road.is_smooth() || way <= 0.0 && self.ramp > 0.0 {
-            return Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+            return Surface::LEVEL;
         }
         if self.direction * (x - self.end) > 0.0 {
             return Surface { elevation: self.road.at(self.end).elevation, slope: 0.0, curvature: 0.0 };
@@ -104,20 +104,20 @@ pub struct Ground<'a> {
     pub vehicle: Vec<usize>,
 }
 
-impl Ground<'_> {
-    fn surface(&self, contact: usize, x: f64) -> Surface<f64> {
-        let level = Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
-        self.pavements[self.vehicle[contact]].as_ref().map_or(level, |pavement| pavement.at(x))
+impl<'a> Ground<'a> {
+    fn pavement(&self, contact: usize) -> Option<&Pavement<'a>> {
+        self.pavements[self.vehicle[contact]].as_ref()
     }
 }
 
 /// Prescribed motion: known beforehand, so that one table serves every sample that moves alike.
 #[derive(Debug, Clone)]
-pub struct Prescribed<'a, M> {
+pub struct Prescribed<'a> {
     ground: Ground<'a>,
-    /// Motion of a contact along the bridge at a step.
-    motion: M,
+    contacts: usize,
     step: usize,
+    /// Motion along the bridge by step and contact.
+    motions: Vec<Coordinate<f64>>,
     /// How many derivatives the table holds, the value included: one or three.
     kinds: usize,
     /// Φ⁰ and its derivatives by step, contact and mode.
@@ -125,19 +125,28 @@ pub struct Prescribed<'a, M> {
     surfaces: Vec<Surface<f64>>,
 }
 
-impl<'a, M: Fn(usize, usize) -> Coordinate<f64>> Prescribed<'a, M> {
-    /// For a number of `steps`; with `slopes` and curvatures of the modes if the step asks for them.
-    pub fn new(ground: Ground<'a>, motion: M, steps: usize, slopes: bool) -> Self {
+impl<'a> Prescribed<'a> {
+    /// With the contacts moving along the bridge as `motion` says at each of a number of `steps`; with `slopes` and
+    /// curvatures of the modes if the step asks for them.
+    pub fn new(
+        ground: Ground<'a>,
+        motion: impl Fn(usize, usize) -> Coordinate<f64>,
+        steps: usize,
+        slopes: bool,
+    ) -> Self {
         let kinds = if slopes { 3 } else { 1 };
         let (shapes, contacts) = (ground.shapes, ground.vehicle.len());
+        let mut motions = Vec::new();
+        motions.reserve_exact((steps + 1) * contacts);
         let mut table = Vec::new();
         table.reserve_exact((steps + 1) * contacts * shapes.modes * kinds);
         for step in 0..=steps {
             for contact in 0..contacts {
-                let x = motion(step, contact).x;
-                match shapes.mesh.panel_at(x) {
+                let motion = motion(step, contact);
+                motions.push(motion);
+                match shapes.mesh.panel_at(motion.x) {
                     Some(panel) => {
-                        let fraction = shapes.mesh.fraction(panel, x);
+                        let fraction = shapes.mesh.fraction(panel, motion.x);
                         for mode in 0..shapes.modes {
                             if slopes {
                                 table.extend(shapes.rates(panel, fraction, mode));
@@ -150,25 +159,31 @@ impl<'a, M: Fn(usize, usize) -> Coordinate<f64>> Prescribed<'a, M> {
                 }
             }
         }
-        let mut path = Prescribed { ground, motion, step: 0, kinds, table, surfaces: Vec::new() };
+        let surfaces = vec![Surface::LEVEL; contacts];
+        let mut path = Prescribed { ground, contacts, step: 0, motions, kinds, table, surfaces };
         path.look_down();
         path
     }
 
+    fn here(&self) -> &[Coordinate<f64>] {
+        &self.motions[self.step * self.contacts..(self.step + 1) * self.contacts]
+    }
+
     fn look_down(&mut self) {
-        self.surfaces.clear();
-        for contact in 0..self.ground.vehicle.len() {
-            let x = (self.motion)(self.step, contact).x;
-            self.surfaces.push(self.ground.surface(contact, x));
+        let here = &self.motions[self.step * self.contacts..];
+        for (contact, (surface, motion)) in self.surfaces.iter_mut().zip(here).enumerate() {
+            if let Some(pavement) = self.ground.pavement(contact) {
+                *surface = pavement.at(motion.x);
+            }
         }
     }
 
     fn entry(&self, contact: usize, mode: usize) -> usize {
-        ((self.step * self.ground.vehicle.len() + contact) * self.ground.shapes.modes + mode) * self.kinds
+        ((self.step * self.contacts + contact) * self.ground.shapes.modes + mode) * self.kinds
     }
 }
 
-impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed<'_, M> {
+impl<L: Lane> Geometry<L> for Prescribed<'_> {
     fn advance(&mut self) {
         self.step += 1;
         self.look_down();
@@ -179,7 +194,7 @@ impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed
     }
 
     fn motion(&self, contact: usize) -> Coordinate<L> {
-        let Coordinate { x, v, a } = (self.motion)(self.step, contact);
+        let Coordinate { x, v, a } = self.here()[contact];
         Coordinate { x: L::splat(x), v: L::splat(v), a: L::splat(a) }
     }
 
@@ -233,7 +248,7 @@ impl<'a, M: Fn(usize, usize) -> Option<Coordinate<f64>>> Free<'a, M> {
             motions: start.clone(),
             panels: vec![None; contacts],
             values: vec![[0.0; 3]; contacts * modes],
-            surfaces: vec![Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 }; contacts],
+            surfaces: vec![Surface::LEVEL; contacts],
         };
         for (contact, motion) in start.into_iter().enumerate() {
             path.put(contact, motion, true);
@@ -253,7 +268,9 @@ impl<'a, M: Fn(usize, usize) -> Option<Coordinate<f64>>> Free<'a, M> {
             self.panels[contact] = shapes.mesh.panel_at(x);
         }
         self.motions[contact] = motion;
-        self.surfaces[contact] = self.ground.surface(contact, x);
+        if let Some(pavement) = self.ground.pavement(contact) {
+            self.surfaces[contact] = pavement.at(x);
+        }
         let values = &mut self.values[contact * shapes.modes..(contact + 1) * shapes.modes];
         match self.panels[contact] {
             Some(panel) => {

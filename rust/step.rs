@@ -31,6 +31,11 @@ pub struct Surface<L> {
     pub curvature: L,
 }
 
+impl Surface<f64> {
+    /// Level road.
+    pub const LEVEL: Self = Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+}
+
 /// Where the contacts stand and how they move: prescribed for all lanes alike, or following the vehicles.
 pub trait Geometry<L: Lane> {
     /// Moves on by one step; contacts whose motion is prescribed go to where they are then.

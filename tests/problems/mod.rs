@@ -3,6 +3,7 @@
 
 pub mod answers;
 pub mod elements;
+pub mod vehicles;
 
 use faer::Mat;
 use spanwise::analysis::{Analysis, Outcome};
