@@ -1,7 +1,7 @@
 //! Random words by counter: Philox4x32-10, whose every output is a pure function of a counter and a key.
 //!
 //! J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC'11 (2011),
-//! https://doi.org/10.1145/2063384.2063405. No state runs from one draw to the next, so that a sample is the same
+//! <https://doi.org/10.1145/2063384.2063405>. No state runs from one draw to the next, so that a sample is the same
 //! whichever worker draws it, and in any order.
 
 const ROUNDS: u32 = 10;

@@ -5,7 +5,7 @@
 //! amplitudes are not drawn, because a class is defined by its spectrum, and chance should not make one road of an
 //! ensemble rougher than the class it stands for. What a bridge meets, a stretch much shorter than the period P, mixes
 //! many waves and is as good as Gaussian (M. Shinozuka and C.-M. Jan, "Digital simulation of random processes and its
-//! applications", Journal of Sound and Vibration 25 (1972), https://doi.org/10.1016/0022-460X(72)90600-1).
+//! applications", Journal of Sound and Vibration 25 (1972) 111-128).
 //!
 //! The waves are summed by one inverse transform into B-spline coefficients. A B-spline multiplies the spectrum by
 //! sinc⁴(m/N), which is divided out first, so that every wave of the band has its exact amplitude at all x, not only at

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, fields
+from math import isfinite
 from typing import ClassVar
 
 from spanwise import _core
@@ -17,6 +18,13 @@ class _Feature(Road):
         for each in fields(self):
             self._set(**{each.name: number(each.name, getattr(self, each.name))})
         super().__post_init__()
+
+
+def _finite(key: str, value: float) -> float:
+    """A number that the core knows by another name."""
+    if not isfinite(value):
+        raise ValueError(f"{key} = {value}: must be a finite number")
+    return value
 
 
 @dataclass(frozen=True)
@@ -133,8 +141,8 @@ class Pothole(_Feature):
     contact_patch: float = CONTACT_PATCH
 
     def _made(self) -> _core.Road:
-        depth, edge = self.depth, self.edge
-        return _core.Road.plateau(self.at, self.length, -depth, edge, self.contact_patch)
+        depth = _finite("depth", self.depth)
+        return _core.Road.plateau(self.at, self.length, -depth, self.edge, self.contact_patch)
 
 
 @dataclass(frozen=True)
@@ -168,7 +176,8 @@ class Joint(_Feature):
     def _made(self) -> _core.Road:
         if not 0.0 < self.gap < float("inf"):
             raise ValueError(f"gap = {self.gap}: must be finite and greater than 0")
-        return _core.Road.plateau(self.at, self.gap, -self.depth, 0.0, self.contact_patch)
+        depth = _finite("depth", self.depth)
+        return _core.Road.plateau(self.at, self.gap, -depth, 0.0, self.contact_patch)
 
 
 @dataclass(frozen=True)

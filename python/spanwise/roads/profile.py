@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, TypeAlias
 
@@ -22,7 +22,7 @@ Array: TypeAlias = NDArray[np.float64]
 Column: TypeAlias = int | str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Profile(Road):
     """A measured profile: a cubic spline through points at any spacing.
 
@@ -57,23 +57,32 @@ class Profile(Road):
 
     x: Array
     elevations: Array
-    _: KW_ONLY
-    detrend: bool = False
-    contact_patch: float = CONTACT_PATCH
-    max_gap: float | None = None
+    detrend: bool
+    contact_patch: float
+    max_gap: float | None
+
+    def __init__(
+        self,
+        x: ArrayLike,
+        elevations: ArrayLike,
+        *,
+        detrend: bool = False,
+        contact_patch: float = CONTACT_PATCH,
+        max_gap: float | None = None,
+    ) -> None:
+        self._set(
+            x=_column("x", x),
+            elevations=_column("elevations", elevations),
+            detrend=flag("detrend", detrend),
+            contact_patch=number("contact_patch", contact_patch),
+            max_gap=None if max_gap is None else number("max_gap", max_gap),
+        )
+        self.__post_init__()
 
     def _made(self) -> _core.Road:
-        x, elevations = _column("x", self.x), _column("elevations", self.elevations)
-        self._set(
-            x=x,
-            elevations=elevations,
-            detrend=flag("detrend", self.detrend),
-            contact_patch=number("contact_patch", self.contact_patch),
-            max_gap=None if self.max_gap is None else number("max_gap", self.max_gap),
-        )
         return _core.Road.profile(
-            x=x,
-            elevation=elevations,
+            x=self.x,
+            elevation=self.elevations,
             detrend=self.detrend,
             contact_patch=self.contact_patch,
             max_gap=self.max_gap,

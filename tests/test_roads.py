@@ -1,0 +1,428 @@
+"""Roads from Python: what they are, how rough they are, what they are made of, what is refused."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+import tracemalloc
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import spanwise as sw
+
+nan, inf = float("nan"), float("inf")
+
+#: Closed forms of a few operations.
+EXACT = 1e-12
+#: Longest time in which nonsense may be refused [s].
+SOON = 0.5
+#: Memory that may be taken in doing so [MiB].
+LITTLE = 50
+
+#: Elevation, slope and curvature of `ISO8608("B", seed=7)` at 12.5 m.
+PINNED = ["-0x1.8467f8582e984p-8", "-0x1.2462d63aecd00p-12", "-0x1.6a6fa10981de0p-3"]
+
+X = np.arange(-20.0, 60.01, 0.25)
+
+
+def measured(**options: Any) -> sw.Profile:
+    return sw.Profile(X, 0.01 * np.sin(0.7 * X), **options)
+
+
+def every_kind() -> list[sw.roads.Road]:
+    single = [
+        sw.Smooth(),
+        sw.ISO8608("C", seed=3, sample=2),
+        sw.ISO8608(G=50e-6, waviness=2.3, band=(0.02, 3.0), contact_patch=0, period=1500, seed=4),
+        sw.roads.bridge_study("average", seed=5),
+        sw.roads.from_iri(3.0),
+        measured(detrend=True, contact_patch=0.1, max_gap=1.0),
+        sw.Step(1.0, 0.02),
+        sw.Ramp(1.0, 2.0, 0.02, contact_patch=0.0),
+        sw.Bump(5.0, 1.0, 0.03),
+        sw.Pothole(7.0, 0.6, 0.05, edge=0.1),
+        sw.Joint(0.0, 0.04, 0.02),
+        sw.Camber(0.0, 30.0, 0.05),
+    ]
+    return [*single, single[1] + single[5] + single[8]]
+
+
+# Evaluation.
+
+
+@pytest.mark.parametrize("road", every_kind(), ids=lambda road: str(road.kind))
+def test_arrays_of_any_shape(road: sw.roads.Road) -> None:
+    x = np.linspace(-10.0, 50.0, 24)
+    for of in (road.elevation, road.slope, road.curvature):
+        values = of(x)
+        assert_array_equal(of(x.reshape(2, 3, 4)), values.reshape(2, 3, 4))
+        assert of(x[5]).shape == ()
+        assert float(of(x[5])) == values[5]
+        assert of([]).shape == (0,)
+    assert np.isfinite(road.curvature(x)).all()
+
+
+def test_shapes_of_features() -> None:
+    # By hand; the patches of 0.24 m do not reach these places, or average a straight line.
+    assert float(sw.Step(1.0, 0.02).elevation(1.0)) == pytest.approx(0.01, rel=EXACT)
+    assert float(sw.Step(1.0, 0.02).slope(1.0)) == pytest.approx(0.02 / 0.24, rel=EXACT)
+    assert float(sw.Ramp(1.0, 3.0, 0.02).elevation(2.0)) == pytest.approx(0.01, rel=EXACT)
+    bump = sw.Bump(5.0, 2.0, 0.03, contact_patch=0.0)
+    assert_allclose(
+        bump.elevation([4.0, 4.5, 5.0, 5.5, 6.0]), [0, 0.015, 0.03, 0.015, 0], atol=1e-15
+    )
+    hole = sw.Pothole(7.0, 1.0, 0.05)
+    assert_allclose(hole.elevation([6.3, 7.0, 7.2, 7.7]), [0.0, -0.05, -0.05, 0.0], atol=1e-15)
+    joint = sw.Joint(0.0, 0.06, 0.02)
+    assert float(joint.elevation(0.05)) == pytest.approx(-0.02 * 0.06 / 0.24, rel=EXACT)
+    camber = sw.Camber(0.0, 30.0, 0.05, contact_patch=0.0)
+    assert_allclose(camber.elevation([0.0, 15.0, 30.0, 40.0]), [0.0, 0.05, 0.0, 0.0], atol=1e-15)
+    assert float(camber.curvature(10.0)) == pytest.approx(-8 * 0.05 / 30.0**2, rel=EXACT)
+
+
+def test_roads_add_up() -> None:
+    random, bump = sw.ISO8608("B", seed=1), sw.Bump(5.0, 1.0, 0.03)
+    both = random + bump
+    assert_allclose(both.elevation(X), random.elevation(X) + bump.elevation(X), rtol=0, atol=1e-16)
+    assert (both + sw.Step(1.0, 0.1)) == (random + (bump + sw.Step(1.0, 0.1)))
+    assert bump + sw.Smooth() == bump
+    assert (sw.Smooth() + sw.Smooth()).is_smooth
+    assert not both.is_smooth
+    assert both.repeats_after == 1024.0
+    assert (both + measured()).ends == (-20.0, 60.0)
+    with pytest.raises(TypeError):
+        bump + 1.0
+
+
+def test_profiles_pass_through_their_points() -> None:
+    road = measured(contact_patch=0.0)
+    assert_allclose(road.elevation(X), road.elevations, rtol=0, atol=1e-16)
+    level = sw.Profile(X, 120.0 + 0.03 * X, detrend=True)
+    assert_allclose(level.elevation(X), 0.0, atol=1e-11)
+
+
+def test_the_road_is_the_same_at_any_sampling() -> None:
+    road = sw.ISO8608("B", seed=7)
+    fine = road.elevation(np.arange(0.0, 100.0, 0.125))
+    assert_array_equal(road.elevation(np.arange(0.0, 100.0, 0.25)), fine[::2])
+
+
+def test_random_roads_stay_as_they_are() -> None:
+    # Not a reference: what this version gives, so that no later one changes the roads of a seed
+    # unnoticed, on any machine.
+    road = sw.ISO8608("B", seed=7)
+    found = [float(of(12.5)).hex() for of in (road.elevation, road.slope, road.curvature)]
+    assert found == PINNED
+
+
+# Roughness.
+
+
+def test_classes_are_those_of_the_standard() -> None:
+    # ISO 8608 at n0 = 0.1 cycle/m, in 1e-6 m3.
+    means = np.array([*sw.roads.CLASSES.values()]) / 1e-6
+    assert_allclose(means, [16, 64, 256, 1024, 4096, 16_384, 65_536, 262_144], rtol=EXACT)
+    assert "".join(sw.roads.CLASSES) == "ABCDEFGH"
+    for letter, mean in sw.roads.CLASSES.items():
+        found = sw.roads.classify(mean)
+        assert found.letter == letter
+        assert_array_equal(found.G, mean)
+        assert found.upper == (inf if letter == "H" else pytest.approx(2 * mean, rel=EXACT))
+        assert found.lower == (0.0 if letter == "A" else pytest.approx(mean / 2, rel=EXACT))
+    assert sw.roads.classify(33e-6).letter == "B"
+    assert sw.roads.classify(1.0).letter == "H"
+
+
+def test_conditions_of_bridge_studies_are_not_classes() -> None:
+    roads = [sw.roads.bridge_study(each) for each in ("very good", "good", "average", "poor")]
+    assert_allclose([road.G for road in roads], [5e-6, 20e-6, 80e-6, 256e-6], rtol=EXACT)
+    assert sw.roads.bridge_study("poor", seed=2) == sw.ISO8608(G=256e-6, seed=2)
+
+
+def test_density_of_waves() -> None:
+    # a sin(2 pi n x) has the variance a^2/2, all of it near n.
+    x = np.arange(0.0, 200.01, 0.05)
+    road = sw.Profile(x, 0.02 * np.sin(2 * np.pi * 0.5 * x))
+    n, density = road.psd(0.0, 200.0, segment=50.0)
+    assert_allclose(n[:3], [0.02, 0.04, 0.06], rtol=EXACT)
+    assert n[-1] == pytest.approx(10.0)
+    near = np.abs(n - 0.5) < 0.05
+    assert density[near].sum() * n[0] == pytest.approx(0.02**2 / 2, rel=1e-3)
+    assert density[~near].sum() < 1e-5 * density.sum()
+    assert n[np.argmax(density)] == pytest.approx(0.5)
+
+
+def test_density_of_random_roads() -> None:
+    # The mean over 100 roads of 1 km in octaves, from three times the resolution on, against
+    # 64e-6 (n/0.1)^-2 within four standard errors.
+    densities = []
+    for sample in range(100):
+        n, density = sw.ISO8608("B", seed=2, sample=sample).psd(0.0, 1000.0)
+        densities.append(density)
+    levels = np.array(densities) * (n / 0.1) ** 2
+    edges = [0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56, 3.8]
+    for low, high in pairwise(edges):
+        octave = levels[:, (n >= low) & (n < high)].mean(axis=1)
+        error = octave.std(ddof=1) / 10.0
+        print(f"{low} to {high} cycle/m: {octave.mean():.3e} +- {error:.1e} m3")
+        assert abs(octave.mean() - 64e-6) <= 4.0 * error
+        assert error < 0.03 * 64e-6
+    assert levels[:, n > 4.2].mean() < 1e-2 * 64e-6
+
+
+@pytest.mark.parametrize("letter", [*"ABCDEFGH"])
+def test_random_roads_are_of_their_class(letter: str) -> None:
+    road = sw.ISO8608(letter, seed=6)  # with a contact patch, which the surface does not have
+    found = road.iso_class(0.0, 1000.0)
+    assert found.letter == letter
+    assert_allclose(found.G, sw.roads.CLASSES[letter], rtol=0.1)
+
+
+def test_index_of_random_roads() -> None:
+    # 0.543 sqrt(G/1e-6), and the other way round.
+    found = [sw.roads.from_iri(3.0, seed=9, sample=k).iri(0.0, 1000.0) for k in range(50)]
+    assert np.mean(found) == pytest.approx(3.0, rel=0.01)
+    assert_allclose(sw.roads.from_iri(0.543 * 8.0).G, 64e-6, rtol=EXACT)
+
+
+def test_index_is_of_the_surface() -> None:
+    felt, bare = sw.ISO8608("B", seed=1), sw.ISO8608("B", seed=1, contact_patch=0.0)
+    assert felt.iri(0.0, 500.0) == bare.iri(0.0, 500.0)
+    assert felt.surface == bare
+    assert bare.surface is bare
+    both = felt + sw.Step(1.0, 0.1) + sw.Smooth()
+    assert both.surface == bare + sw.Step(1.0, 0.1, contact_patch=0.0)
+    assert both.iri(0.0, 500.0) == both.surface.iri(0.0, 500.0) > felt.iri(0.0, 500.0)
+    # Linear in the amplitude.
+    high = sw.ISO8608(G=4 * 64e-6, seed=1)
+    assert high.iri(0.0, 500.0) == pytest.approx(2 * felt.iri(0.0, 500.0), rel=1e-10)
+
+
+# Values.
+
+
+@pytest.mark.parametrize("road", every_kind(), ids=lambda road: str(road.kind))
+def test_roads_are_values(road: sw.roads.Road) -> None:
+    for again in (
+        pickle.loads(pickle.dumps(road)),
+        copy.deepcopy(road),
+        sw.roads.from_table(road.arguments),  # type: ignore[arg-type]
+    ):
+        assert again == road
+        assert type(again) is type(road)
+        assert hash(again) == hash(road)
+        assert repr(again) == repr(road)
+        assert_array_equal(again.elevation(X), road.elevation(X))
+    assert road != sw.Bump(1.0, 1.0, 1.0)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        road.contact_patch = 1.0  # type: ignore[attr-defined]
+
+
+def test_points_cannot_be_changed() -> None:
+    x = X.copy()
+    road = sw.Profile(x, x)
+    x[3] = 1e3
+    assert road == sw.Profile(X, X)
+    with pytest.raises(ValueError, match="read-only"):
+        road.x[3] = 1e3
+    assert repr(road).startswith("Profile(321 points from -20.0 m to 60.0 m")
+
+
+def test_numbers_are_kept_as_they_are_understood() -> None:
+    assert sw.Step(1, 0) == sw.Step(1.0, 0.0)
+    assert sw.ISO8608("A", band=[np.float32(0.5), 2]).band == (0.5, 2.0)  # type: ignore[arg-type]
+    assert sw.ISO8608("A").G == 16e-6
+    assert dataclasses.replace(sw.ISO8608("A", seed=1), seed=2) == sw.ISO8608("A", seed=2)
+
+
+def test_tables() -> None:
+    make = sw.roads.from_table
+    assert make({"kind": "iso-8608", "class": "B", "seed": 1}) == sw.ISO8608("B", seed=1)
+    assert make({"kind": "iso-8608", "iri": 2.5}) == sw.roads.from_iri(2.5)
+    assert make({"kind": "bridge-study", "condition": "good"}) == sw.ISO8608(G=20e-6)
+    step = {"kind": "step", "at": 0.0, "height": 0.01}
+    assert make([{"kind": "smooth"}, step]) == sw.Step(0.0, 0.01)
+    assert make([step, step]) == sw.Step(0.0, 0.01) + sw.Step(0.0, 0.01)
+    assert make([]) == sw.Smooth()
+    table = sw.ISO8608("B", seed=1).arguments
+    assert isinstance(table, dict)
+    assert list(table)[:2] == ["kind", "class"]
+    assert "G" not in table
+
+
+# Files.
+
+
+def test_profiles_from_files(tmp_path: Path) -> None:
+    file = tmp_path / "road.csv"
+    file.write_text(
+        "# surveyed\nplace,left,right\n\n" + "".join(f"{x},0,{x**2}\n" for x in range(6))
+    )
+    road = sw.Profile.read_csv(file, columns=("place", "right"), scale=(1.0, 1e-3), detrend=True)
+    x = np.arange(6.0)
+    assert road == sw.Profile(x, 1e-3 * x**2, detrend=True)
+    assert sw.Profile.read_csv(file, columns=(0, 2)) == sw.Profile(x, x**2)
+    table = {"kind": "profile", "file": str(file), "columns": [0, 2], "contact_patch": 0.1}
+    assert sw.roads.from_table(table) == sw.Profile(x, x**2, contact_patch=0.1)
+    file.write_text("0;1\n1;1\n2;1\n3;1\n")
+    assert sw.Profile.read_csv(file, delimiter=";") == sw.Profile(x[:4], np.ones(4))
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "parts"),
+    [
+        ("0,1\n1,2\n2,x\n3,1\n", {}, ("line 3", "'x'", "not a number")),
+        ("0,1\n1\n2,2\n", {}, ("line 2", "1 columns", "column 1")),
+        ("0,1\n1,1\n1,1\n2,1\n", {}, ("x[2] = 1 m", "greater than")),
+        ("0,1\n1,nan\n2,1\n3,1\n", {}, ("elevations[1] = NaN", "finite")),
+        ("x,r\n0,1\n", {"columns": ("x", "R")}, ("columns[1] = 'R'", "x, r", "did you mean 'r'")),
+        ("0,1\n", {"columns": ("x", "r")}, ("columns[0] = 'x'", "no line of names")),
+        ("0,1\n", {"columns": (0, -1)}, ("columns[1] = -1", "number from 0")),
+        ("0,1\n", {"columns": 3}, ("columns[0] = 3", "pair")),
+        ("0,1\n", {"delimiter": ", "}, ("delimiter = ', '", "one character")),
+        ("0,1\n", {"scale": 1.0}, ("scale = 1.0", "two factors")),
+        ("", {}, ("x = 0 points", "4 or more")),
+    ],
+)
+def test_bad_files(tmp_path: Path, text: str, options: Any, parts: tuple[str, ...]) -> None:
+    file = tmp_path / "road.csv"
+    file.write_text(text)
+    with pytest.raises(ValueError) as refused:  # noqa: PT011 - the parts are the match
+        sw.Profile.read_csv(file, **options)
+    for part in parts:
+        assert part in str(refused.value)
+
+
+def test_files_that_are_not_there_or_not_text(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        sw.Profile.read_csv(tmp_path / "no.csv")
+    file = tmp_path / "road.csv"
+    file.write_bytes(b"\xff\xfe\x00\xd8")
+    with pytest.raises(ValueError, match="not a file of separated values"):
+        sw.Profile.read_csv(file)
+
+
+# Refusals.
+
+POSITIVE = "greater than 0"
+NOT_NEGATIVE = "0 or more"
+NUMBER = "must be a number"
+
+Refusal = tuple[Callable[[], object], tuple[str, ...]]
+
+
+def table(**given: Any) -> Callable[[], object]:
+    return lambda: sw.roads.from_table(given)
+
+
+REFUSALS: list[Refusal] = [
+    (lambda: sw.ISO8608(), ("class, G", "one of the two")),
+    (lambda: sw.ISO8608("K"), ("class = 'K'", "A, B, C, D, E, F, G, H")),
+    (lambda: sw.ISO8608("b"), ("class = 'b'", "did you mean 'B'")),
+    (lambda: sw.ISO8608(2), ("class = 2", "must be A, B")),  # type: ignore[arg-type]
+    (lambda: sw.ISO8608("A", G=64e-6), ("G = 6.4e-05", "not used with class = 'A'")),
+    (lambda: sw.ISO8608(G=0.0), ("G = 0", POSITIVE)),
+    (lambda: sw.ISO8608(G=nan), ("G = NaN", POSITIVE)),
+    (lambda: sw.ISO8608("A", waviness=-1.0), ("waviness = -1", NOT_NEGATIVE)),
+    (lambda: sw.ISO8608("A", waviness=1e9), ("waviness = 1000000000", "variance")),
+    (lambda: sw.ISO8608("A", band=(0.0, 4.0)), ("band[0] = 0", POSITIVE)),
+    (lambda: sw.ISO8608("A", band=(4.0, 4.0)), ("band[1] = 4 cycle/m", "greater than")),
+    (lambda: sw.ISO8608("A", band=(0.1,)), ("band = (0.1,)", "two")),  # type: ignore[arg-type]
+    (lambda: sw.ISO8608("A", band=(0.01, 1e9)), ("band = 100 m with waves of", "4194304 grid")),
+    (lambda: sw.ISO8608("A", band=(1e-300, 4.0)), ("band = ", "4194304 grid")),
+    (lambda: sw.ISO8608("A", contact_patch=-0.1), ("contact_patch = -0.1", NOT_NEGATIVE)),
+    (lambda: sw.ISO8608("A", period=99.0), ("period = 99 m", "longest wave: 100 m")),
+    (lambda: sw.ISO8608("A", period=inf), ("period = inf", "finite")),
+    (lambda: sw.ISO8608("A", period=1e12), ("period = 1000000000000 m", "4194304 grid")),
+    (lambda: sw.ISO8608("A", seed=-1), ("seed = -1", "not be negative")),
+    (lambda: sw.ISO8608("A", seed=1.5), ("seed = 1.5", "whole")),  # type: ignore[arg-type]
+    (lambda: sw.ISO8608("A", sample=10**30), ("sample", "too large")),
+    (lambda: sw.roads.bridge_study("bad"), ("condition = 'bad'", "very good, good, average, poor")),
+    (lambda: sw.roads.bridge_study("Good"), ("condition = 'Good'", "did you mean 'good'")),
+    (lambda: sw.roads.from_iri(0.0), ("iri = 0.0", POSITIVE)),
+    (lambda: sw.roads.from_iri(2.0, waviness=2.5), ("waviness = 2.5", "not used with iri")),
+    (lambda: sw.roads.classify(nan), ("G = nan", POSITIVE)),
+    (lambda: sw.Profile([0, 1, 1, 2], [0] * 4), ("x[2] = 1 m", "greater than x[1] = 1 m")),
+    (lambda: sw.Profile([0, 2, 1, 3], [0] * 4), ("x[2] = 1 m", "greater than x[1] = 2 m")),
+    (lambda: sw.Profile([0, nan, 1, 3], [0] * 4), ("x[1] = NaN", "finite")),
+    (lambda: sw.Profile([0, 1, 2, 3], [0, 0, 0, inf]), ("elevations[3] = inf", "finite")),
+    (lambda: sw.Profile([0, 1, 2, 9], [0] * 4), ("x[3] = 9 m: 7 m", "max_gap = 5 m")),
+    (lambda: sw.Profile(X, X, max_gap=0.1), ("x[1] = -19.75 m", "max_gap = 0.1 m")),
+    (lambda: sw.Profile(X, X, max_gap=nan), ("max_gap = NaN", POSITIVE)),
+    (lambda: sw.Profile([0, 1, 2], [0, 0, 0]), ("x = 3 points", "4 or more")),
+    (lambda: sw.Profile(X, X[1:]), ("elevations = 320 values", "one for each x, 321")),
+    (lambda: sw.Profile(X, "road"), ("elevations = 'road'", "list of numbers")),
+    (lambda: sw.Profile([X], X), ("x = [array", "list of numbers")),
+    (lambda: sw.Profile(X, X, detrend=1), ("detrend = 1", "true or false")),  # type: ignore[arg-type]
+    (lambda: sw.Step(nan, 0.1), ("at = NaN", "finite")),
+    (lambda: sw.Step(0.0, "1"), ("height = '1'", NUMBER)),  # type: ignore[arg-type]
+    (lambda: sw.Step(0.0, 0.1, contact_patch=-1.0), ("contact_patch = -1", NOT_NEGATIVE)),
+    (lambda: sw.Ramp(2.0, 2.0, 0.1), ("end = 2 m", "greater than start, 2 m")),
+    (lambda: sw.Camber(2.0, 1.0, 0.1), ("end = 1 m", "greater than start, 2 m")),
+    (lambda: sw.Camber(0.0, 1.0, inf), ("rise = inf", "finite")),
+    (lambda: sw.Bump(0.0, 0.0, 0.1), ("length = 0", POSITIVE)),
+    (lambda: sw.Bump(0.0, 1.0, nan), ("height = NaN", "finite")),
+    (lambda: sw.Pothole(0.0, 1.0, 0.1, edge=0.6), ("edge = 0.6 m", "half the length, 0.5 m")),
+    (lambda: sw.Pothole(0.0, 1.0, inf), ("depth = inf", "finite")),
+    (lambda: sw.Joint(0.0, -0.1, 0.1), ("gap = -0.1", POSITIVE)),
+    (lambda: sw.roads.Sum([1.0]), ("parts[0] = 1.0", "road")),  # type: ignore[arg-type]
+    (lambda: measured().elevation(61.0), ("path from 61 m to 61 m", "-20 m to 60 m")),
+    (lambda: measured().slope([0.0, -21.0]), ("path from -21 m", "-20 m to 60 m")),
+    (lambda: sw.Smooth().elevation(nan), ("x = nan", "finite")),
+    (lambda: measured().iri(0.0, 61.0), ("path from 0 m to 61 m", "-20 m to 60 m")),
+    (lambda: measured().iri(0.0, 10.0), ("end = 10 m", "11 to 100000 m beyond start, 0 m")),
+    (lambda: sw.Smooth().iri(0.0, 1e12), ("end = 1000000000000 m", "11 to 100000 m")),
+    (lambda: measured().psd(5.0, 5.0), ("end = 5.0 m", "greater than start, 5.0 m")),
+    (lambda: measured().psd(0.0, 61.0), ("-20 m to 60 m",)),
+    (lambda: sw.Smooth().psd(0.0, 1e9), ("spacing = 0.05 m", "250.0 to")),
+    (lambda: measured().psd(0.0, 50.0, spacing=2.0), ("spacing = 2.0 m", "1.5625 m")),
+    (lambda: measured().psd(0.0, 50.0, segment=0.1), ("segment = 0.1 m", "0.4 m", "50.0 m")),
+    (lambda: sw.Smooth().iso_class(0.0, 100.0), ("smooth", "no class")),
+    (lambda: measured().iso_class(0.0, 50.0, band=(1.0, 0.5)), ("band = (1.0, 0.5)", "greater")),
+    (
+        lambda: measured().iso_class(0.0, 50.0, band=(0.01, 0.1)),
+        ("band = (0.01, 0.1)", "only 0.24"),
+    ),
+    (table(), ("road: missing kind", "iso-8608, bridge-study")),
+    (table(kind="iso8608"), ("road: kind = 'iso8608'", "did you mean 'iso-8608'")),
+    (table(kind=3), ("kind = 3", "must be iso-8608")),
+    (table(kind="iso-8608", clas="B"), ("unknown key 'clas'", "did you mean 'class'", "allowed")),
+    (table(kind="iso-8608", road_class="B"), ("unknown key 'road_class'",)),
+    (table(kind="iso-8608", iri=2.0, G=1e-6), ("G = 1e-06", "not used with iri")),
+    (table(kind="bridge-study", seed=1), ("missing condition",)),
+    (table(kind="step", at=1.0), ("road: missing height",)),
+    (table(kind="smooth", seed=1), ("unknown key 'seed'",)),
+    (table(kind="profile"), ("missing x, elevations",)),
+    (table(kind="profile", file="a.csv", x=[1.0]), ("x: not used with file",)),
+    (table(kind="profile", x=[1.0], scale=[1, 1]), ("scale = [1, 1]", "with file only")),
+    (table(kind="profile", file=3), ("file = 3", "text")),
+    (lambda: sw.roads.from_table([{"kind": "smooth"}, {}]), ("road[1]: missing kind",)),
+    (lambda: sw.roads.from_table("B"), ("road: 'B'", "table")),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize(("ask", "parts"), REFUSALS)
+def test_refused_soon_and_cheaply(ask: Callable[[], object], parts: tuple[str, ...]) -> None:
+    tracemalloc.start()
+    start = perf_counter()
+    with pytest.raises(ValueError) as refused:  # noqa: PT011 - the parts are the match
+        ask()
+    elapsed, (_, peak) = perf_counter() - start, tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    for part in parts:
+        assert part in str(refused.value), str(refused.value)
+    assert elapsed < SOON
+    assert peak < LITTLE * 2**20
+
+
+def test_a_road_needs_a_kind() -> None:
+    with pytest.raises(TypeError, match="all kinds"):
+        sw.roads.Road()
