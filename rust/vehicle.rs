@@ -5,6 +5,9 @@
 use crate::assembly::{Assembly, BuildUp, ContactLaw, Friction, front_first, positions, prefix};
 use crate::error::{Error, finite, not_negative, positive};
 
+/// Distance that tells two places apart [m]: far above rounding, far below a wheel.
+const SAME: f64 = 1e-6;
+
 /// An axle: a tyre below a suspension, with an unsprung mass between them or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axle {
@@ -364,7 +367,7 @@ fn check_upright(bodies: &[Body]) -> Result<(), Error> {
         for (k, coupling) in body.couplings.iter().enumerate() {
             let (to, at, own) = coupling.ends();
             let (there, here) = (positions[to] + at, positions[b] + own);
-            if (there - here).abs() > 1e-6 * (1.0 + there.abs()) {
+            if (there - here).abs() > SAME {
                 return Err(Error::input(
                     format!("{}.own", coupling_key(bodies, b, k)),
                     format!("{own} m"),
@@ -382,7 +385,7 @@ fn check_apart(bodies: &[Body], order: &[(usize, usize)]) -> Result<(), Error> {
     let at = |(b, i): (usize, usize)| positions[b] + bodies[b].axles[i].position;
     for pair in order.windows(2) {
         let [(b, i), (other, j)] = [pair[0], pair[1]];
-        if at((other, j)) >= at((b, i)) {
+        if at((b, i)) - at((other, j)) < SAME {
             return Err(Error::input(
                 format!("bodies[{other}].axles[{j}].position"),
                 format!("{} m", bodies[other].axles[j].position),

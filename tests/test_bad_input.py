@@ -50,6 +50,28 @@ def cross(**changes: Any) -> sw.Run:
     return sw.cross(two_spans(), vehicle(), **{"speed": 20.0, "modes": 3, **changes})
 
 
+def tractor(**changes: Any) -> sw.Vehicle:
+    """A tractor whose trailer is changed."""
+    axles = [sw.Axle(**AXLE), sw.Axle(**{**AXLE, "position": -2.0})]
+    front = sw.Body(mass=6e3, pitch_inertia=9e3, axles=axles)
+    given = {"mass": 20e3, "pitch_inertia": 9e4, "axles": [sw.Axle(**{**AXLE, "position": -3.0})]}
+    hinge = sw.Hinge(to=0, at=-1.5, own=5.0)
+    return sw.Vehicle(bodies=[front, sw.Body(**{**given, "hinge": hinge, **changes})])
+
+
+def hinged(**changes: Any) -> sw.Vehicle:
+    return tractor(hinge=sw.Hinge(**{"to": 0, "at": -1.5, "own": 5.0, **changes}))
+
+
+def sprung(**changes: Any) -> sw.Vehicle:
+    spring = sw.Spring(**{"to": 0, "at": -1.5, "own": 5.0, "stiffness": 1e6, **changes})
+    return tractor(hinge=None, springs=[spring])
+
+
+def train(**changes: Any) -> sw.ForceTrain:
+    return sw.ForceTrain(**{"loads": [1e4, 2e4], **changes})
+
+
 POSITIVE = "greater than 0"
 NUMBER = "must be a number"
 WHOLE = "must be a whole number"
@@ -116,7 +138,7 @@ BRIDGES: list[tuple[Callable[..., sw.Bridge], dict[str, Any], tuple[str, ...]]] 
 ]
 
 LIMIT = "-1000 to 1000 N"
-VEHICLES: list[tuple[Callable[..., sw.Vehicle], dict[str, Any], tuple[str, ...]]] = [
+VEHICLES: list[tuple[Callable[..., object], dict[str, Any], tuple[str, ...]]] = [
     *((vehicle, {"mass": bad}, ("mass", str(bad), POSITIVE)) for bad in (0, -1, inf)),
     (vehicle, {"mass": nan}, ("mass", "NaN", POSITIVE)),
     *((vehicle, {"pitch_inertia": bad}, ("pitch_inertia", str(bad), POSITIVE)) for bad in (0, -1)),
@@ -154,6 +176,61 @@ VEHICLES: list[tuple[Callable[..., sw.Vehicle], dict[str, Any], tuple[str, ...]]
     (front_axle, {"position": -2}, ("axles[1].position", "-2 m", "front to rear")),
     # Both axles are behind the centre of mass.
     (front_axle, {"position": -1}, ("axles[1].position", "-2 m", "centre of mass")),
+    *(
+        (front_axle, {key: bad}, (f"axles[0].{key}", text, "0 or more"))
+        for key in ("mass", "tyre_damping", "suspension_damping")
+        for bad, text in ((-1, "-1"), (nan, "NaN"), (inf, "inf"))
+    ),
+    (
+        front_axle,
+        {"mass": 700, "friction_limit": 1e3, "stick_stiffness": 1e7, "leaf_decay": 0.002},
+        ("axles[0].stick_stiffness", "10000000.0", "leaf_decay = 0.002", "one of the two"),
+    ),
+    (
+        front_axle,
+        {"friction_limit": 1e3, "stick_stiffness": 1e7},
+        ("axles[0].stick_stiffness", "10000000 N/m", "not for a massless axle"),
+    ),
+    *(
+        (front_axle, {"mass": 700, "friction_limit": 1e3, key: bad}, (f"axles[0].{key}", POSITIVE))
+        for key in ("stick_stiffness", "leaf_decay")
+        for bad in (0, -1, nan, inf)
+    ),
+    (front_axle, {"friction_limit": inf, "leaf_decay": 0.01}, ("friction_limit", "inf", "finite")),
+    (vehicle, {"bodies": 3}, ("bodies", "3", "list of Body")),
+    (vehicle, {"bodies": [3]}, ("bodies[0]", "3", "must be a Body")),
+    (vehicle, {"bodies": [sw.Body(mass=1, pitch_inertia=1)]}, ("mass", "20000", "not beside")),
+    (sw.Vehicle, {}, ("missing mass, pitch_inertia, axles", "or bodies")),
+    (sw.Vehicle, {"bodies": []}, ("missing mass, pitch_inertia, axles", "or bodies")),
+    *((tractor, {"mass": bad}, ("bodies[1].mass", str(bad), POSITIVE)) for bad in (0, -1, inf)),
+    (tractor, {"mass": "2"}, ("bodies[1].mass", "'2'", NUMBER)),
+    (tractor, {"pitch_inertia": -1}, ("bodies[1].pitch_inertia", "-1", POSITIVE)),
+    (tractor, {"axles": []}, ("bodies[1].axles", "0", "free to pitch")),
+    (tractor, {"axles": AXLE}, ("axles", "list of Axle")),
+    (tractor, {"hinge": 3}, ("hinge", "3", "must be a Hinge")),
+    (tractor, {"springs": [3]}, ("springs[0]", "3", "must be a Spring")),
+    (tractor, {"hinge": None}, ("bodies[1]", "uncoupled", "a hinge or springs")),
+    (hinged, {"to": 1}, ("bodies[1].hinge.to", "1", "earlier body: 0")),
+    (hinged, {"to": -1}, ("bodies[1].hinge.to", "-1", "not be negative")),
+    (hinged, {"to": 0.5}, ("bodies[1].hinge.to", "0.5", WHOLE)),
+    (hinged, {"own": nan}, ("bodies[1].hinge.own", "NaN", "finite")),
+    (hinged, {"own": -5.0}, ("bodies[", "would carry no load")),
+    (hinged, {"height": -1}, ("bodies[1].hinge.height", "-1", "0 or more")),
+    (sprung, {"stiffness": 0}, ("bodies[1].springs[0].stiffness", "0", POSITIVE)),
+    (sprung, {"damping": -1}, ("bodies[1].springs[0].damping", "-1", "0 or more")),
+    (
+        sprung,
+        {"friction_limit": 1, "initial_friction": 2},
+        ("bodies[1].springs[0].initial_friction", "2 N", "-1 to 1 N"),
+    ),
+    (train, {}, ("positions", "2 loads", "or spacings")),
+    (train, {"positions": [0.0]}, ("positions", "1 values", "each of the 2 loads")),
+    (train, {"positions": [0.0, 1.0]}, ("positions[1]", "1 m", "front to rear", "0 m")),
+    (train, {"positions": [1.0, 0.0], "spacings": [1.0]}, ("spacings", "not beside positions")),
+    (train, {"spacings": [1.0, 2.0]}, ("spacings", "2 values", "one less than the 2 loads")),
+    (train, {"spacings": [-1.0]}, ("spacings[0]", "-1 m", POSITIVE)),
+    (train, {"spacings": [1.0], "loads": [1e4, -1.0]}, ("loads[1]", "-1", POSITIVE)),
+    (train, {"loads": []}, ("loads", "[]", "at least one")),
 ]
 
 STEADY = "constant-speed or constant-traction"

@@ -88,6 +88,7 @@ def test_a_vehicle_of_its_own() -> None:
 def test_a_preset_can_be_changed() -> None:
     changes = "initial_friction = [1000.0, -1000]\nmass = 30e3\n"
     vehicle = sw.Case.parse(BRIDGE + VEHICLE + changes + CROSSING).vehicle
+    assert isinstance(vehicle, sw.Vehicle)
     assert [axle.initial_friction for axle in vehicle.axles] == [1000.0, -1000.0]
     assert vehicle.mass == 30e3
     assert vehicle.pitch_inertia == sw.vehicles.kishan_1973().pitch_inertia
@@ -147,6 +148,81 @@ def test_a_byte_order_mark_does_no_harm(tmp_path: Path) -> None:
     assert sw.Case.read(str(path)).crossing["modes"] == 3
 
 
+def test_a_vehicle_of_several_bodies() -> None:
+    def axle(position: float, **more: float) -> sw.Axle:
+        return sw.Axle(position=position, tyre_stiffness=3.5e6, suspension_stiffness=1e6, **more)
+
+    tractor = sw.Body(mass=4500, pitch_inertia=4604, axles=[axle(0.5), axle(-2.5, mass=1100)])
+    trailer = sw.Body(
+        mass=31450,
+        pitch_inertia=16302,
+        axles=[axle(-2.9)],
+        hinge=sw.Hinge(to=0, at=-2.15, own=6.15),
+    )
+    cab = sw.Body(
+        mass=500,
+        pitch_inertia=300,
+        springs=[sw.Spring(to=0, at=x, own=x, stiffness=2e5, damping=3e3) for x in (0.8, -0.6)],
+    )
+    expected = sw.Vehicle(bodies=[tractor, trailer, cab])
+    assert sw.Case.parse(BRIDGE + SEVERAL + CROSSING).vehicle == expected
+
+
+def test_trains() -> None:
+    forces = "[vehicle]\nloads = [1e5, 2e5]\nspacings = [4]\n"
+    masses = "[vehicle]\nmasses = [1e4, 2e4]\npositions = [1, -3]\n"
+    assert sw.Case.parse(BRIDGE + forces + CROSSING).vehicle == sw.ForceTrain(
+        loads=[1e5, 2e5], spacings=[4.0]
+    )
+    assert sw.Case.parse(BRIDGE + masses + CROSSING).vehicle == sw.MovingMasses(
+        masses=[1e4, 2e4], positions=[1.0, -3.0]
+    )
+    hs20 = '[vehicle]\npreset = "hs20"\nrear_spacing = 9.0\n'
+    expected = sw.vehicles.hs20(rear_spacing=9.0)
+    assert sw.Case.parse(BRIDGE + hs20 + CROSSING).vehicle == expected
+
+
+SEVERAL = """
+[[vehicle.bodies]]
+mass = 4500
+pitch_inertia = 4604
+[[vehicle.bodies.axles]]
+position = 0.5
+tyre_stiffness = 3.5e6
+suspension_stiffness = 1e6
+[[vehicle.bodies.axles]]
+position = -2.5
+mass = 1100
+tyre_stiffness = 3.5e6
+suspension_stiffness = 1e6
+[[vehicle.bodies]]
+mass = 31450
+pitch_inertia = 16302
+[[vehicle.bodies.axles]]
+position = -2.9
+tyre_stiffness = 3.5e6
+suspension_stiffness = 1e6
+[vehicle.bodies.hinge]
+to = 0
+at = -2.15
+own = 6.15
+[[vehicle.bodies]]
+mass = 500
+pitch_inertia = 300
+[[vehicle.bodies.springs]]
+to = 0
+at = 0.8
+own = 0.8
+stiffness = 2e5
+damping = 3e3
+[[vehicle.bodies.springs]]
+to = 0
+at = -0.6
+own = -0.6
+stiffness = 2e5
+damping = 3e3
+"""
+
 KNOWN = r"allowed: \[bridge\], \[vehicle\], \[crossing\]"
 REFUSED = [
     # Tables
@@ -177,13 +253,60 @@ REFUSED = [
     # Vehicle
     (
         BRIDGE + VEHICLE.replace("-1973", "1973") + CROSSING,
-        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973 \(did you mean 'kishan-1973'\?\)",
+        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973, .*\(did you mean 'kishan-1973'",
     ),
     (BRIDGE + "[vehicle]\npreset = 3" + CROSSING, r"preset = 3: must be one of kishan-1973"),
     (BRIDGE + "[vehicle]\npreset = []" + CROSSING, r"preset = \[\]: must be one of"),
     (BRIDGE + "[vehicle]\nprest = 'a'" + CROSSING, r"'prest' \(did you mean 'preset'\?\)"),
-    (BRIDGE + "[vehicle]" + CROSSING, r"missing mass, pitch_inertia, axles; or name a preset: kis"),
-    (BRIDGE + VEHICLE + "axles = []" + CROSSING, r"'axles' \(not beside a preset\)"),
+    (
+        BRIDGE + "[vehicle]" + CROSSING,
+        r"missing mass, pitch_inertia, axles; or bodies, loads or masses; or name a preset: kis",
+    ),
+    (
+        BRIDGE + "[vehicle]\npreset = 'cl-625'\nmass = 2" + CROSSING,
+        r"'mass' \(not beside this preset\); allowed: preset",
+    ),
+    (
+        BRIDGE + "[vehicle]\npreset = 'articulated-5-axle'\nmass = 2" + CROSSING,
+        r"'mass' \(not beside this preset\); allowed: preset, initial_friction",
+    ),
+    (
+        BRIDGE + "[vehicle]\npreset = 'hs20'\nrear_spacing = 10.0" + CROSSING,
+        r"rear_spacing = 10 m: must be 4\.2672 to 9\.144 m",
+    ),
+    (
+        BRIDGE + "[vehicle]\npreset = 'hs20'\nrearspacing = 5.0" + CROSSING,
+        r"'rearspacing' \(did you mean 'rear_spacing'\?\)",
+    ),
+    (
+        BRIDGE + "[vehicle]\nloads = [1e4]\nmass = 1e3" + CROSSING,
+        r"unknown key 'mass' \(not beside loads\); allowed: loads, positions, spacings",
+    ),
+    (BRIDGE + "[vehicle]\nloads = [1e4, 1e4]" + CROSSING, r"positions = \[\]: .*2 loads, or spac"),
+    (BRIDGE + "[vehicle]\nbodies = 3" + CROSSING, r"bodies = 3: .*\[\[vehicle\.bodies\]\]"),
+    (
+        BRIDGE
+        + SEVERAL.replace("pitch_inertia = 4604", "pitch_inertia = 4604\nmas = 1")
+        + CROSSING,
+        r"bodies\[0\]: unknown key 'mas' \(did you mean 'mass'\?\); allowed: mass, pitch_in",
+    ),
+    (
+        BRIDGE + SEVERAL.replace("own = 6.15", "own = 6.15\nhight = 1") + CROSSING,
+        r"bodies\[1\]: hinge: unknown key 'hight' \(did you mean 'height'\?\); allowed: to, at",
+    ),
+    (
+        BRIDGE + SEVERAL.replace("position = -2.5", "positon = -2.5") + CROSSING,
+        r"bodies\[0\]: axles\[1\]: unknown key 'positon' \(did you mean 'position'\?\)",
+    ),
+    (
+        BRIDGE + SEVERAL.replace("to = 0", "to = 1") + CROSSING,
+        r"\[vehicle\]: bodies\[1\]\.hinge\.to = 1: must be an earlier body: 0",
+    ),
+    (
+        BRIDGE + SEVERAL.replace("[vehicle.bodies.hinge]", "[[vehicle.bodies.hinge]]") + CROSSING,
+        r"bodies\[1\]: hinge = \[.*must be a table, \[vehicle\.bodies\.hinge\]",
+    ),
+    (BRIDGE + VEHICLE + "axles = []" + CROSSING, r"'axles' \(not beside this preset\)"),
     (
         BRIDGE + VEHICLE + "initial_friction = [1.0]" + CROSSING,
         r"initial_friction = \(1\.0,\): give one force for each of the 2 axles",

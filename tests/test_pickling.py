@@ -40,6 +40,14 @@ def test_copies_are_the_same(bridge: sw.Bridge) -> None:
     assert copy.deepcopy(vehicle) == vehicle
 
 
+@pytest.mark.parametrize("name", sw.vehicles.PRESETS)
+def test_copies_of_the_catalogue_are_the_same(name: str) -> None:
+    vehicle = sw.vehicles.PRESETS[name]()
+    for again in (pickle.loads(pickle.dumps(vehicle)), copy.deepcopy(vehicle)):
+        assert again == vehicle
+        np.testing.assert_array_equal(again.static_loads(), vehicle.static_loads())
+
+
 def test_crossings_in_other_processes(bridge: sw.Bridge) -> None:
     vehicle = sw.vehicles.kishan_1973()
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:

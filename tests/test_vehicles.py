@@ -98,12 +98,6 @@ def test_the_vehicle_of_1973() -> None:
     assert_allclose(limits, [4_800.0, 4_800.0], rtol=EXACT)
 
 
-def test_every_preset_is_a_vehicle() -> None:
-    assert "kishan-1973" in sw.vehicles.PRESETS
-    for make in sw.vehicles.PRESETS.values():
-        assert isinstance(make(), sw.Vehicle)
-
-
 def test_initial_friction_changes_nothing_else() -> None:
     truck = sw.vehicles.kishan_1973()
     changed = truck.with_initial_friction(100.0, -200.0)
@@ -123,3 +117,85 @@ def test_axles_given_as_a_list_are_kept_as_a_tuple() -> None:
     truck = sw.Vehicle(mass=1e4, pitch_inertia=1e4, axles=[axle(1.0), axle(-1.0)])
     assert truck.axles == (axle(1.0), axle(-1.0))
     assert_allclose(truck.axle_positions, [1.0, -1.0])
+
+
+def articulated(**hinge: float) -> sw.Vehicle:
+    tractor = sw.Body(mass=6e3, pitch_inertia=9e3, axles=[axle(1.0), axle(-2.5)])
+    held = sw.Hinge(**{"to": 0, "at": -2.0, "own": 5.0, **hinge})  # type: ignore[arg-type]
+    trailer = sw.Body(mass=20e3, pitch_inertia=9e4, axles=[axle(-3.0)], hinge=held)
+    return sw.Vehicle(bodies=[tractor, trailer])
+
+
+def test_a_trailer_rests_on_its_tractor() -> None:
+    # Of the trailer 3/8 rest on the hinge, 2 m behind the tractor's centre of mass; lever rule.
+    truck = articulated()
+    weight = 20e3 * GRAVITY
+    hinge = 3.0 / 8.0 * weight
+    rear = (1.0 * 6e3 * GRAVITY + 3.0 * hinge) / 3.5
+    expected = [6e3 * GRAVITY + hinge - rear, rear, weight - hinge]
+    assert_allclose(truck.static_loads(), expected, rtol=EXACT)
+    assert_allclose(truck.axle_spacings, [3.5, 7.5], rtol=EXACT)
+    assert truck.total_mass == 26e3
+    # Along the road the whole balances about its centre of mass.
+    assert truck.static_loads() @ truck.axle_positions == pytest.approx(0.0, abs=1e-6)
+    assert truck.coordinates == ["body 1 heave", "body 1 pitch", "body 2 pitch"]
+    assert [each.position for each in truck.axles] == [1.0, -2.5, -3.0]
+
+
+def test_one_body_either_way() -> None:
+    axles = [axle(2.0), axle(-2.0)]
+    alone = sw.Vehicle(bodies=[sw.Body(mass=20e3, pitch_inertia=6e4, axles=axles, cg_height=1.5)])
+    assert alone == sw.Vehicle(mass=20e3, pitch_inertia=6e4, axles=axles, cg_height=1.5)
+    assert (alone.mass, alone.bodies) == (20e3, ())
+    assert alone.parts[0].axles == tuple(axles)
+
+
+def test_changes_to_a_vehicle_of_several_bodies() -> None:
+    truck = articulated()
+    rubbing = [dataclasses.replace(each, friction_limit=5e3) for each in truck.bodies[0].axles]
+    front = dataclasses.replace(truck.bodies[0], axles=rubbing)
+    truck = dataclasses.replace(truck, axles=(), bodies=[front, truck.bodies[1]])
+    changed = truck.with_initial_friction(1e3, -2e3, 0.0)
+    assert [each.initial_friction for each in changed.axles] == [1e3, -2e3, 0.0]
+    assert [each.initial_friction for each in changed.bodies[0].axles] == [1e3, -2e3]
+    assert changed.with_initial_friction(0.0, 0.0, 0.0) == truck
+    assert dataclasses.replace(truck) == truck
+
+
+def test_friction_holds_where_there_is_some() -> None:
+    # A single unsprung mass: the stick of 20 tyres beside the suspension, or the one given.
+    def truck(**more: float) -> sw.Vehicle:
+        wheel = sw.Axle(
+            position=0.0, tyre_stiffness=2e6, suspension_stiffness=5e5, mass=800.0, **more
+        )
+        return vehicle(wheel)
+
+    def expected(k: float) -> np.ndarray:
+        stiffness = np.array([[k, -k], [-k, k + 2e6]]) / np.array([20e3, 800.0])[:, None]
+        return np.sort(np.sqrt(np.linalg.eigvals(stiffness))) * HERTZ
+
+    for more, stick in (
+        ({}, 0.0),
+        ({"friction_limit": 1e3}, 20 * 2e6),
+        ({"friction_limit": 1e3, "stick_stiffness": 7e6}, 7e6),
+        ({"friction_limit": 1e3, "leaf_decay": 0.002}, 1e6),
+    ):
+        rubs = truck(**more)
+        assert_allclose(rubs.frequencies(locked=True), expected(5e5 + stick), rtol=1e-10)
+        assert_allclose(rubs.frequencies(locked=False), expected(5e5), rtol=1e-10)
+
+
+def test_trains_have_loads_and_nothing_that_vibrates() -> None:
+    forces = sw.ForceTrain(loads=[1e5, 2e5], spacings=[3.0])
+    assert forces == sw.ForceTrain(loads=(1e5, 2e5), positions=(0.0, -3.0))
+    assert_allclose(forces.static_loads(gravity=1.0), [1e5, 2e5], rtol=0)
+    assert_allclose(forces.axle_positions, [2.0, -1.0], rtol=EXACT)
+    assert (forces.wheelbase, forces.total_mass, forces.coordinates) == (3.0, 0.0, [])
+    masses = sw.MovingMasses(masses=[1e4, 2e4], positions=[7.0, 4.0])
+    assert_allclose(masses.static_loads(gravity=2.0), [2e4, 4e4], rtol=EXACT)
+    assert_allclose(masses.axle_positions, [2.0, -1.0], rtol=EXACT)
+    assert masses.total_mass == 3e4
+    for train in (forces, masses):
+        assert train.frequencies(locked=True).shape == (0,)
+    assert dataclasses.replace(forces, loads=[1.0, 2.0]).positions == forces.positions
+    assert sw.ForceTrain(loads=[5.0]).wheelbase == 0.0

@@ -25,7 +25,9 @@ FORCES: Final = Keys.of(ForceTrain)
 MASSES: Final = Keys.of(MovingMasses)
 
 #: One body, which has no defaults for these.
-ONE: Final = Keys(("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "pitch_inertia", "axles"))
+ONE: Final = Keys(
+    ("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "pitch_inertia", "axles")
+)
 SEVERAL: Final = Keys(("bodies",), ("bodies",))
 
 #: Keys of `ONE` that can be given beside the preset of a vehicle of one body.

@@ -127,8 +127,7 @@ def articulated_5_axle() -> Vehicle:
 
     References
     ----------
-    D. Cantero, A. Gonzalez and E. J. OBrien, "Maximum dynamic stress on bridges traversed by moving
-    loads", Proceedings of the ICE, Bridge Engineering 162 (2009), and later papers of the authors.
+    D. Cantero and co-authors, in their studies of the dynamic amplification of bridges.
     """
     masses = (700.0, 1_100.0, 750.0, 750.0, 750.0)
     suspensions = (0.4e6, 1.0e6, 0.75e6, 0.75e6, 0.75e6)
@@ -318,7 +317,9 @@ class Preset:
     @property
     def options(self) -> tuple[str, ...]:
         """Names of what `make` accepts."""
-        return tuple(p.name for p in signature(self.make).parameters.values() if p.kind is p.KEYWORD_ONLY)
+        return tuple(
+            p.name for p in signature(self.make).parameters.values() if p.kind is p.KEYWORD_ONLY
+        )
 
     def __call__(self, **options: Any) -> AnyVehicle:
         """The vehicle."""
@@ -327,30 +328,29 @@ class Preset:
 
 #: Vehicles that a case file can name, by preset.
 PRESETS: Final[dict[str, Preset]] = {
-    "kishan-1973": Preset(
-        kishan_1973, "two axles with friction", "Kishan and Traill-Nash, IABSE Publ. 33 (1973)"
-    ),
+    "kishan-1973": Preset(kishan_1973, "two axles with friction", "Kishan and Traill-Nash (1973)"),
     "quarter-car": Preset(
-        quarter_car, "quarter of a lorry", "McGetrick et al., Insight 51 (2009)", recalled=True
+        quarter_car, "quarter of a lorry", "McGetrick et al. (2009)", recalled=True
     ),
-    "half-car": Preset(
-        half_car, "two-axle lorry", "OBrien and Keenahan, SCHM 22 (2015)", recalled=True
-    ),
+    "half-car": Preset(half_car, "two-axle lorry", "OBrien and Keenahan (2015)", recalled=True),
     "articulated-5-axle": Preset(
-        articulated_5_axle, "tractor and semi-trailer", "Cantero et al., ICE Bridge Eng. 162 (2009)"
+        articulated_5_axle, "tractor and semi-trailer", "D. Cantero and co-authors"
     ),
     "hs20-44": Preset(
-        hs20_44, "tractor and semi-trailer", "Shi and Cai (2009), Deng and Cai (2010)", recalled=True
+        hs20_44,
+        "tractor and semi-trailer",
+        "Shi and Cai (2009)",
+        recalled=True,
     ),
     "hs20": Preset(hs20, "axle loads of a code", "AASHTO HS20"),
     "t44": Preset(t44, "axle loads of a code", "NAASRA and Austroads T44", recalled=True),
     "cl-625": Preset(cl_625, "axle loads of a code", "CSA S6 CL-625"),
-    "flm3": Preset(flm3, "axle loads of a code", "EN 1991-2 fatigue load model 3"),
+    "flm3": Preset(flm3, "axle loads of a code", "EN 1991-2, FLM3"),
     **{
         f"flm4-{lorry}": Preset(
             partial(flm4, lorry),
             f"axle loads of a code, lorry {lorry} of 5",
-            "EN 1991-2 fatigue load model 4",
+            "EN 1991-2, FLM4",
             recalled=True,
         )
         for lorry in range(1, 6)

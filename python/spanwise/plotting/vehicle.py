@@ -91,7 +91,7 @@ def _levels(vehicle: Vehicle) -> list[int]:
     for _ in levels:
         for b, body in enumerate(vehicle.parts):
             at = [axle.position for axle in body.axles]
-            for end in filter(None, [body.hinge, *body.springs]):
+            for end in body.joints:
                 below = len(at) > 0 and (min(at) <= end.own <= max(at) or isinstance(end, Spring))
                 low, high = (b, end.to) if below else (end.to, b)
                 levels[high] = max(levels[high], levels[low] + 1)
@@ -108,13 +108,8 @@ def _boxes(vehicle: Vehicle) -> list[_Box]:
     for b, (body, x, level) in enumerate(
         zip(parts, vehicle.body_positions, _levels(vehicle), strict=True)
     ):
-        own = [end.own for end in filter(None, [body.hinge, *body.springs])]
-        theirs = [
-            end.at
-            for other in parts
-            for end in filter(None, [other.hinge, *other.springs])
-            if end.to == b
-        ]
+        own = [end.own for end in body.joints]
+        theirs = [end.at for other in parts for end in other.joints if end.to == b]
         held = [0.0, *own, *theirs]
         rolling = [axle.position for axle in body.axles]
         back = min([each - 0.4 for each in held] + [each - beyond for each in rolling])
@@ -167,11 +162,13 @@ def _draw_bodies(
     for x, axle, (b, _) in zip(centre + at, vehicle.axles, vehicle.axle_order, strict=True):
         _draw_axle(ax, x, axle, half, scale)
         if boxes[b].floor > FLOOR:
+            bar = [(-2.0 * half, scale * FLOOR), (2.0 * half, scale * FLOOR)]
+            symbols.stroke(ax, symbols.local(ax, x), bar)
             for side in (-1.0, 1.0):
                 post = [(side * half, scale * FLOOR), (side * half, scale * boxes[b].floor)]
                 symbols.stroke(ax, symbols.local(ax, x), post)
     for b, body in enumerate(vehicle.parts):
-        for end in filter(None, [body.hinge, *body.springs]):
+        for end in body.joints:
             low, high = sorted((boxes[b], boxes[end.to]), key=lambda box: box.floor)
             x = centre + boxes[b].centre + end.own
             if isinstance(end, Spring):
