@@ -7,6 +7,7 @@
 
 pub mod error;
 
+pub mod along;
 pub mod bridge;
 pub mod line;
 
