@@ -44,7 +44,7 @@ impl Fixity {
     }
 
     /// The same by its simplest name.
-    fn simplest(self) -> Self {
+    pub(crate) fn simplest(self) -> Self {
         match (self.vertical(), self.rotation()) {
             (f64::INFINITY, 0.0) => Fixity::Pinned,
             (f64::INFINITY, f64::INFINITY) => Fixity::Clamped,
@@ -288,7 +288,25 @@ impl Bridge {
 }
 
 /// Supports in order, each on the beam, none twice, their springs sound, no rigid-body motion left.
-fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Support>, Error> {
+pub(crate) fn checked_supports(length: f64, supports: Vec<Support>) -> Result<Vec<Support>, Error> {
+    let supports = checked_supports_of_given(length, supports)?;
+    let turned_back = supports.iter().any(|s| s.fixity.rotation() > 0.0);
+    if !turned_back && supports.len() < 2 {
+        let listed: Vec<String> = supports
+            .iter()
+            .map(|s| match s.fixity.vertical() {
+                f64::INFINITY => format!("pinned at {} m", s.at),
+                k => format!("spring of {k:e} N/m at {} m", s.at),
+            })
+            .collect();
+        let motion = if supports.is_empty() { "fall" } else { "rotate about its only support" };
+        return Err(Error::Unstable { supports: listed.join(", "), motion });
+    }
+    Ok(supports)
+}
+
+/// The same, but that they hold the beam is left to who gave the bridge.
+pub(crate) fn checked_supports_of_given(length: f64, mut supports: Vec<Support>) -> Result<Vec<Support>, Error> {
     let near = COINCIDENT * length;
     if supports.len() > MAX_STATIONS {
         return Err(Error::input(
@@ -325,18 +343,6 @@ fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Suppo
                 "two supports must not stand at the same position",
             ));
         }
-    }
-    let turned_back = supports.iter().any(|s| s.fixity.rotation() > 0.0);
-    if !turned_back && supports.len() < 2 {
-        let listed: Vec<String> = supports
-            .iter()
-            .map(|s| match s.fixity.vertical() {
-                f64::INFINITY => format!("pinned at {} m", s.at),
-                k => format!("spring of {k:e} N/m at {} m", s.at),
-            })
-            .collect();
-        let motion = if supports.is_empty() { "fall" } else { "rotate about its only support" };
-        return Err(Error::Unstable { supports: listed.join(", "), motion });
     }
     Ok(supports)
 }

@@ -37,6 +37,18 @@ impl Quantity {
         Quantity::Reaction,
         Quantity::ClampMoment,
     ];
+
+    /// What it is called in messages and among the arguments of a bridge given by its modes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Deflection => "deflection",
+            Quantity::Moment => "moment",
+            Quantity::ShearLeft => "shear-left",
+            Quantity::ShearRight => "shear-right",
+            Quantity::Reaction => "reaction",
+            Quantity::ClampMoment => "clamp-moment",
+        }
+    }
 }
 
 /// Slope at a node [rad] per unit load along the bridge.
@@ -141,6 +153,17 @@ impl Responses {
     /// then so many reactions, then clamp moments; `held` are the nodes at which deflection is held.
     pub fn from_lines(sections: Vec<usize>, reactions: usize, held: Vec<usize>, lines: Vec<Line>) -> Self {
         Responses { sections, reactions, held, lines }
+    }
+
+    /// The same of some of the sections only, by their numbers.
+    pub fn of_sections(&self, chosen: &[usize]) -> Self {
+        let n = self.sections.len();
+        let lines = (0..4).flat_map(|quantity| chosen.iter().map(move |s| quantity * n + s)).chain(4 * n..self.len());
+        Responses {
+            sections: chosen.iter().map(|&s| self.sections[s]).collect(),
+            lines: lines.map(|r| self.lines[r].clone()).collect(),
+            ..self.clone()
+        }
     }
 
     /// Nodes of the sections.

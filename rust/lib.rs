@@ -14,6 +14,7 @@ pub mod line;
 pub mod flexibility;
 pub mod influence;
 pub mod modes;
+pub mod settlement;
 
 pub mod assembly;
 pub mod vehicle;
@@ -32,6 +33,9 @@ pub mod sequence;
 
 pub mod envelope;
 pub mod survey;
+
+pub mod given;
+pub mod interpolation;
 
 pub mod analysis;
 
