@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from spanwise import _core
-from spanwise._checks import array, count, number, numbers, shown, word
+from spanwise._checks import count, number, numbers, word
 from spanwise.bridge import Bridge
+from spanwise.damping import Damping, resolved
 from spanwise.run import Run
 from spanwise.vehicles import GRAVITY, Vehicle
 
@@ -25,7 +23,7 @@ def cross(
     speed: float,
     modes: int | None = None,
     drive: Drive = "constant-speed",
-    damping: ArrayLike = 0.0,
+    damping: Damping = 0.0,
     approach: float = 0.0,
     tail: float = 0.0,
     sections: Sequence[float] | None = None,
@@ -55,9 +53,10 @@ def cross(
     drive : {"constant-speed", "constant-traction"}, optional
         Keep the speed, or keep traction and resistance in balance, so that the speed follows the
         slope of the deflected bridge.
-    damping : float or array_like, optional
-        Ratio to critical damping, one for all modes or one for each; or the damping matrix C at the
-        moving masses [N s/m], shape (stations, stations).
+    damping : float, array_like or Rayleigh, optional
+        Ratio to critical damping, one for all modes or one for each; `Rayleigh`, or a table with
+        the key ``rayleigh`` and the values alpha and beta; or the damping matrix C at the moving
+        masses [N s/m], shape (stations, stations).
     approach : float, optional
         Length of the rigid approach [m].
     tail : float, optional
@@ -107,12 +106,11 @@ def cross(
     if not isinstance(vehicle, Vehicle):
         raise TypeError(f"vehicle = {vehicle!r}: must be a Vehicle")
     if modes is None:
-        spans = len(bridge.span_bounds) - 1
-        modes = min(len(bridge.stations), max(3, 2 * spans))
-    ratios, matrix = _damping(damping)
+        modes = bridge.default_modes()
+    modes = count("modes", modes)
+    ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
     speed, beta, gravity = number("speed", speed), number("beta", beta), number("gravity", gravity)
     approach, tail, mask = number("approach", approach), number("tail", tail), number("mask", mask)
-    modes = count("modes", modes)
     drive_word = word("drive", drive, *get_args(Drive))
     recovery_word = word("recovery", recovery, *get_args(Recovery))
     if not 0.0 <= mask < 1.0:
@@ -148,21 +146,6 @@ def cross(
         "mask": mask,
         "step": core.step,
     }
-    if np.ndim(damping) == 0:
+    if matrix is None and len(ratios) == 1:
         settings["damping"] = ratios[0]
     return Run(bridge, vehicle, settings, core)
-
-
-def _damping(damping: ArrayLike) -> tuple[list[float], NDArray[np.float64] | None]:
-    """The ratios, or the matrix."""
-    try:
-        dimensions = np.ndim(damping)
-    except ValueError:  # rows of different lengths
-        dimensions = 3
-    if dimensions < 2:
-        return numbers("damping", damping), None
-    if dimensions == 2:
-        return [], array("damping", damping)
-    raise ValueError(
-        f"damping = {shown(damping)}: must be a ratio, a list of ratios or a square matrix C"
-    )

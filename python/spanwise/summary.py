@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise.bridge import Bridge
 from spanwise.run import Extremes, Run
 from spanwise.table import factor_text
 
@@ -22,13 +23,13 @@ def summary(run: Run) -> str:
 def _description(run: Run) -> list[str]:
     bridge, truck, used = run.bridge, run.truck, run.settings
     held = ", ".join(f"{kind} at {x:g} m" for x, kind in bridge.supports)
-    rigidities = bridge.EI if np.ptp(bridge.EI) > 0.0 else bridge.EI[:1]
+    rigidities = _rigidity(bridge)
     ratios = np.asarray(used["damping"])
     damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
     holding, sliding = (truck.frequencies(locked=locked) for locked in (True, False))
     return [
         f"bridge    {bridge.length:g} m, {held}",
-        f"          EI {_list(rigidities, '.5g')} N m2; {len(bridge.masses)} moving masses, "
+        f"          {rigidities}{len(bridge.masses)} moving masses, "
         f"{bridge.masses.sum() / 1000.0:.4g} t",
         f"vehicle   {truck.mass / 1000.0:.4g} t; static axle loads "
         f"{_list(run.static_axle_loads / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from first to "
@@ -41,6 +42,18 @@ def _description(run: Run) -> list[str]:
         f"          {run.steps} steps of {used['step']:.4g} s, beta {used['beta']:.4g}; "
         f"recovery by {used['recovery']}",
     ]
+
+
+def _rigidity(bridge: Bridge) -> str:
+    """EI: its values, or its range where there are many; nothing if it is unknown."""
+    if not bridge.described:
+        return ""
+    values = bridge.EI
+    if np.ptp(values) == 0.0:
+        values = values[:1]
+    if len(values) > 8:
+        return f"EI {values.min():.5g} to {values.max():.5g} N m2; "
+    return f"EI {_list(values, '.5g')} N m2; "
 
 
 def _governing(run: Run) -> list[str]:

@@ -334,7 +334,7 @@ impl Statics {
         let s = mesh.nodes()[section];
         let [mut a, mut b] = [0.0; 2];
         let near = COINCIDENT * mesh.length();
-        for &(at, reaction) in self.forces.iter().filter(|f| f.0 < s - near || (right && f.0 <= s + near)) {
+        for &(_, reaction) in self.forces.iter().filter(|f| f.0 < s - near || (right && f.0 <= s + near)) {
             a += reaction[0];
             b += reaction[1];
         }
