@@ -6,10 +6,12 @@ use crate::crossing::{Damping, ModalBridge, Settings, cross_all};
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
+use crate::given::Given;
 use crate::history::History;
 use crate::influence::{Quantity, Responses};
 use crate::modes::Modes;
-use crate::recovery::{Packed, Recovery, Rows};
+use crate::path::ModeShapes;
+use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
 use crate::survey::survey;
 use crate::vehicle::Vehicle;
 
@@ -24,14 +26,14 @@ pub const MAX_SECTIONS: usize = 2000;
 pub struct Analysis {
     /// Positions of the sections [m].
     pub sections: Vec<f64>,
-    /// Flexibility on a mesh that has them as nodes.
-    pub flexibility: Flexibility,
     /// The included modes.
     pub modes: Modes,
     /// The bridge in these modes.
     pub model: ModalBridge,
     /// The responses looked at.
     pub responses: Responses,
+    /// Kinds of response that a bridge given by its modes came without; their lines are zero.
+    pub missing: Vec<Quantity>,
     /// How they follow from modal states.
     pub rows: Rows,
 }
@@ -54,8 +56,34 @@ impl Analysis {
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
         let responses = Responses::new(&flexibility, bridge, &sections, go_on)?;
-        let rows = Rows::new(bridge, &responses, &modes, &lines, flexibility.mesh(), (damping, &model), recovery);
-        Ok(Analysis { sections, flexibility, modes, model, responses, rows })
+        let mesh = flexibility.mesh();
+        let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
+        let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
+        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, mesh, recovery);
+        Ok(Analysis { sections, modes, model, responses, missing: Vec::new(), rows })
+    }
+
+    /// Of a bridge `given` by its flexibility or its modes, in `count` modes, looking at some of its sections [m].
+    pub fn of_given(
+        given: &Given,
+        count: usize,
+        damping: &Damping,
+        sections: Option<&[f64]>,
+        recovery: Recovery,
+    ) -> Result<Self, Error> {
+        let (modes, lines) = given.modes(count)?;
+        let (sections, chosen) = given.chosen(sections)?;
+        let responses = given.responses().of_sections(&chosen);
+        let in_modes = given.damping(&modes, damping)?;
+        let factors = given.factors(&responses, &chosen, &modes, (damping, &in_modes));
+        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, given.mesh(), recovery);
+        let model = ModalBridge {
+            omega: modes.omega.clone(),
+            shapes: ModeShapes::new(given.mesh(), &lines),
+            damping: in_modes,
+            narrowest_panel: given.narrowest_panel(),
+        };
+        Ok(Analysis { sections, modes, model, responses, missing: given.missing().to_vec(), rows })
     }
 
     /// One crossing by one vehicle.
@@ -88,6 +116,10 @@ impl Analysis {
         quantity: Quantity,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<[Vec<f64>; 2], Error> {
+        if self.missing.contains(&quantity) {
+            let allowed = "this bridge was given without influence lines of it";
+            return Err(Error::input("quantity", quantity.name(), allowed));
+        }
         let range = self.responses.range(quantity);
         let bytes = 2 * size_of::<f64>() * outcome.history.len() * range.len();
         if bytes > MAX_HISTORY_BYTES {
@@ -104,7 +136,13 @@ impl Analysis {
 
     /// Extremes of one quantity; shears on both sides of a section count together.
     pub fn envelope_of(&self, outcome: &Outcome, quantity: Quantity) -> Envelope {
-        let of = |quantity| outcome.envelope.of(self.responses.range(quantity));
+        let of = |quantity| {
+            let mut envelope = outcome.envelope.of(self.responses.range(quantity));
+            if self.missing.contains(&quantity) {
+                envelope.forget();
+            }
+            envelope
+        };
         match quantity {
             Quantity::ShearLeft | Quantity::ShearRight => of(Quantity::ShearLeft).merged(&of(Quantity::ShearRight)),
             other => of(other),

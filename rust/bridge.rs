@@ -1,6 +1,7 @@
 //! The bridge as an engineer describes it (spans, supports, EI, mass), checked once and valid from then on.
 
-use crate::error::{Error, finite, not_negative, positive};
+use crate::along::{Along, Distribution, Sign};
+use crate::error::{Error, finite, positive};
 
 /// Most stations a bridge may have: F is a dense matrix of this order, and its eigensolution grows with the cube.
 pub const MAX_STATIONS: usize = 2000;
@@ -9,12 +10,47 @@ pub const MAX_STATIONS: usize = 2000;
 pub const COINCIDENT: f64 = 1e-9;
 
 /// How a support holds the beam.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fixity {
     /// Deflection held, rotation free.
     Pinned,
-    /// Deflection and rotation held; only at an end of the beam.
+    /// Deflection and rotation held.
     Clamped,
+    /// Held by springs.
+    Elastic {
+        /// Force for a unit of deflection [N/m], infinite where deflection is held.
+        vertical: f64,
+        /// Couple for a unit of rotation [N m/rad]: 0 where rotation is free, infinite where it is held.
+        rotation: f64,
+    },
+}
+
+impl Fixity {
+    /// Force for a unit of deflection [N/m], infinite where deflection is held.
+    pub fn vertical(self) -> f64 {
+        match self {
+            Fixity::Pinned | Fixity::Clamped => f64::INFINITY,
+            Fixity::Elastic { vertical, .. } => vertical,
+        }
+    }
+
+    /// Couple for a unit of rotation [N m/rad]: 0 where rotation is free, infinite where it is held.
+    pub fn rotation(self) -> f64 {
+        match self {
+            Fixity::Pinned => 0.0,
+            Fixity::Clamped => f64::INFINITY,
+            Fixity::Elastic { rotation, .. } => rotation,
+        }
+    }
+
+    /// The same by its simplest name.
+    pub(crate) fn simplest(self) -> Self {
+        match (self.vertical(), self.rotation()) {
+            (f64::INFINITY, 0.0) => Fixity::Pinned,
+            (f64::INFINITY, f64::INFINITY) => Fixity::Clamped,
+            (vertical, rotation) => Fixity::Elastic { vertical, rotation },
+        }
+    }
 }
 
 /// A support of the beam.
@@ -44,16 +80,39 @@ pub enum Stations {
     At(Vec<f64>),
 }
 
+/// Everything that makes a bridge, as given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Length [m].
+    pub length: f64,
+    /// Supports, in any order.
+    pub supports: Vec<Support>,
+    /// Positions at which the beam cannot carry a moment [m], in any order.
+    pub hinges: Vec<f64>,
+    /// EI [N m²].
+    pub flexural_rigidity: Along,
+    /// Mass per length [kg/m].
+    pub mass: Along,
+    /// Where the mass is lumped.
+    pub stations: Stations,
+    /// Point masses (position [m], mass [kg]): stations of their own, or added to the station they stand on.
+    pub point_masses: Vec<(f64, f64)>,
+}
+
 /// A straight beam on supports, its mass lumped at stations.
 ///
-/// A *span* is a stretch between neighbouring supports or ends, overhangs included; EI is constant in each.
+/// A *span* is a stretch between neighbouring supports or ends, overhangs included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bridge {
     length: f64,
     supports: Vec<Support>,
     /// Ends and supports, left to right: `span i` runs from `bounds[i]` to `bounds[i + 1]` [m].
     bounds: Vec<f64>,
-    flexural_rigidity: Vec<f64>,
+    hinges: Vec<f64>,
+    /// EI in pieces of constant value.
+    flexural_rigidity: Distribution,
+    /// Breakpoints of EI as given, before a taper is cut into pieces [m].
+    breakpoints: Vec<f64>,
     stations: Vec<Station>,
 }
 
@@ -69,31 +128,38 @@ impl Bridge {
         stations: &Stations,
         point_masses: &[(f64, f64)],
     ) -> Result<Self, Error> {
-        positive("length", length)?;
-        let supports = checked_supports(length, supports)?;
+        Bridge::from_layout(Layout {
+            length,
+            supports,
+            hinges: Vec::new(),
+            flexural_rigidity: Along::PerSpan(flexural_rigidity.to_vec()),
+            mass: Along::PerSpan(mass.to_vec()),
+            stations: stations.clone(),
+            point_masses: point_masses.to_vec(),
+        })
+    }
+
+    /// A bridge from all that can be said of one. That its hinges make no mechanism is left to
+    /// [`crate::flexibility::Flexibility::new`].
+    pub fn from_layout(layout: Layout) -> Result<Self, Error> {
+        let length = positive("length", layout.length)?;
+        let supports = checked_supports(length, layout.supports)?;
+        let hinges = checked_hinges(length, layout.hinges, &supports)?;
         let near = COINCIDENT * length;
         let mut bounds = vec![0.0];
         bounds.extend(supports.iter().map(|s| s.at).filter(|&x| x > near && x < length - near));
         bounds.push(length);
-        let spans = bounds.len() - 1;
 
-        let given = flexural_rigidity.len();
-        let flexural_rigidity = per_span("EI", flexural_rigidity, spans)?;
-        for (i, &ei) in flexural_rigidity.iter().enumerate() {
-            positive(indexed("EI", i, given), ei)?;
-        }
-        let given = mass.len();
-        let mass = per_span("mass", mass, spans)?;
-        for (i, &m) in mass.iter().enumerate() {
-            not_negative(indexed("mass", i, given), m)?;
-        }
+        let flexural_rigidity = Distribution::new("EI", &layout.flexural_rigidity, &bounds, Sign::Positive)?
+            .stepped("EI", layout.flexural_rigidity.pieces())?;
+        let mass = Distribution::new("mass", &layout.mass, &bounds, Sign::NotNegative)?;
 
-        let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near);
-        let mut lumps = match stations {
+        let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near && s.fixity.vertical().is_infinite());
+        let mut lumps = match &layout.stations {
             Stations::PerSpan(counts) => equal_shares(&bounds, &mass, counts)?,
             Stations::At(positions) => tributary_shares(&bounds, &mass, positions, &held)?,
         };
-        for (i, &(at, m)) in point_masses.iter().enumerate() {
+        for (i, &(at, m)) in layout.point_masses.iter().enumerate() {
             on_the_bridge(&format!("point_masses[{i}]"), at, length)?;
             positive(format!("point_masses[{i}] mass"), m)?;
             match lumps.iter_mut().find(|s| (s.at - at).abs() <= near) {
@@ -106,7 +172,7 @@ impl Bridge {
         }
         lumps.sort_by(|a, b| a.at.total_cmp(&b.at));
         let total: f64 = lumps.iter().map(|s| s.mass).sum();
-        // A mass over a support does not move: it takes no part in the dynamics.
+        // A mass over a rigid support does not move: it takes no part in the dynamics.
         lumps.retain(|s| s.mass > 0.0 && !held(s.at));
         if lumps.is_empty() {
             let allowed = "at least one station off the supports must carry mass";
@@ -115,7 +181,8 @@ impl Bridge {
                 false => Error::input("mass", 0, allowed),
             });
         }
-        Ok(Bridge { length, supports, bounds, flexural_rigidity, stations: lumps })
+        let breakpoints = layout.flexural_rigidity.breakpoints().to_vec();
+        Ok(Bridge { length, supports, bounds, hinges, flexural_rigidity, breakpoints, stations: lumps })
     }
 
     /// A bridge laid out as consecutive `spans` [m] with supports between them and the given ends (`None` is free).
@@ -127,6 +194,12 @@ impl Bridge {
         stations: &Stations,
         point_masses: &[(f64, f64)],
     ) -> Result<Self, Error> {
+        let (length, supports) = Bridge::consecutive(spans, ends)?;
+        Bridge::new(length, supports, flexural_rigidity, mass, stations, point_masses)
+    }
+
+    /// Length [m] and supports of consecutive `spans` [m] with the given ends (`None` is free).
+    pub fn consecutive(spans: &[f64], ends: [Option<Fixity>; 2]) -> Result<(f64, Vec<Support>), Error> {
         if spans.is_empty() {
             return Err(Error::input("spans", "[]", "needs at least one length in metres"));
         }
@@ -147,7 +220,7 @@ impl Bridge {
             return Err(Error::input(format!("spans[{i}]"), format!("{span:e} m"), allowed));
         }
         supports.extend(ends[1].map(|fixity| Support { at: x, fixity }));
-        Bridge::new(x, supports, flexural_rigidity, mass, stations, point_masses)
+        Ok((x, supports))
     }
 
     /// Length [m].
@@ -165,9 +238,19 @@ impl Bridge {
         &self.bounds
     }
 
-    /// EI of each span [N m²].
-    pub fn flexural_rigidity(&self) -> &[f64] {
-        &self.flexural_rigidity
+    /// Hinges, left to right [m].
+    pub fn hinges(&self) -> &[f64] {
+        &self.hinges
+    }
+
+    /// EI of each piece of the beam [N m²]: of each span, unless given otherwise.
+    pub fn flexural_rigidity(&self) -> Vec<f64> {
+        self.flexural_rigidity.values()
+    }
+
+    /// Ends of the pieces of constant EI, left to right [m].
+    pub fn rigidity_bounds(&self) -> &[f64] {
+        self.flexural_rigidity.bounds()
     }
 
     /// The moving masses, left to right (masses over supports are left out: they do not move).
@@ -177,13 +260,21 @@ impl Bridge {
 
     /// EI at x [N m²], to the right of x where it changes there.
     pub fn flexural_rigidity_at(&self, x: f64) -> f64 {
-        let span = self.bounds[1..self.bounds.len() - 1].partition_point(|&b| b <= x);
-        self.flexural_rigidity[span]
+        self.flexural_rigidity.piece_at(x)
     }
 
-    /// Sections looked at unless the user chooses: mass stations, supports and the tenth points of every span [m].
+    /// Every position at which something happens: ends, supports, hinges, changes of EI, masses [m].
+    pub fn points(&self) -> impl Iterator<Item = f64> {
+        let stations = self.stations.iter().map(|s| s.at);
+        let given = self.bounds.iter().chain(&self.hinges).copied();
+        given.chain(stations).chain(self.flexural_rigidity.bounds().iter().copied())
+    }
+
+    /// Sections looked at unless the user chooses: mass stations, supports, hinges, breakpoints of EI and the tenth
+    /// points of every span [m].
     pub fn default_sections(&self) -> Vec<f64> {
         let mut sections: Vec<f64> = self.stations.iter().map(|s| s.at).collect();
+        sections.extend(self.hinges.iter().chain(&self.breakpoints).map(|x| x.clamp(0.0, self.length)));
         for span in self.bounds.windows(2) {
             sections.extend((0..=10).map(|i| match i {
                 10 => span[1],
@@ -196,8 +287,26 @@ impl Bridge {
     }
 }
 
-/// Supports in order, each on the beam, none twice, clamps only at the ends, no rigid-body motion left.
-fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Support>, Error> {
+/// Supports in order, each on the beam, none twice, their springs sound, no rigid-body motion left.
+pub(crate) fn checked_supports(length: f64, supports: Vec<Support>) -> Result<Vec<Support>, Error> {
+    let supports = checked_supports_of_given(length, supports)?;
+    let turned_back = supports.iter().any(|s| s.fixity.rotation() > 0.0);
+    if !turned_back && supports.len() < 2 {
+        let listed: Vec<String> = supports
+            .iter()
+            .map(|s| match s.fixity.vertical() {
+                f64::INFINITY => format!("pinned at {} m", s.at),
+                k => format!("spring of {k:e} N/m at {} m", s.at),
+            })
+            .collect();
+        let motion = if supports.is_empty() { "fall" } else { "rotate about its only support" };
+        return Err(Error::Unstable { supports: listed.join(", "), motion });
+    }
+    Ok(supports)
+}
+
+/// The same, but that they hold the beam is left to who gave the bridge.
+pub(crate) fn checked_supports_of_given(length: f64, mut supports: Vec<Support>) -> Result<Vec<Support>, Error> {
     let near = COINCIDENT * length;
     if supports.len() > MAX_STATIONS {
         return Err(Error::input(
@@ -213,13 +322,17 @@ fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Suppo
                 support.at = end;
             }
         }
-        if support.fixity == Fixity::Clamped && support.at != 0.0 && support.at != length {
-            return Err(Error::input(
-                format!("supports[{i}]"),
-                format!("clamped at {} m", support.at),
-                format!("a clamp must be at an end of the beam, 0 or {length} m"),
-            ));
+        if let Fixity::Elastic { vertical, rotation } = support.fixity {
+            if vertical.is_nan() || vertical <= 0.0 {
+                let allowed = "must be greater than 0 [N/m], or inf where the deflection is held";
+                return Err(Error::input(format!("supports[{i}] vertical"), vertical, allowed));
+            }
+            if rotation.is_nan() || rotation < 0.0 {
+                let allowed = "must be 0 or more [N m/rad]: 0 where rotation is free, inf where it is held";
+                return Err(Error::input(format!("supports[{i}] rotation"), rotation, allowed));
+            }
         }
+        support.fixity = support.fixity.simplest();
     }
     supports.sort_by(|a, b| a.at.total_cmp(&b.at));
     for pair in supports.windows(2) {
@@ -231,13 +344,40 @@ fn checked_supports(length: f64, mut supports: Vec<Support>) -> Result<Vec<Suppo
             ));
         }
     }
-    let clamped = supports.iter().any(|s| s.fixity == Fixity::Clamped);
-    if !clamped && supports.len() < 2 {
-        let listed: Vec<String> = supports.iter().map(|s| format!("pinned at {} m", s.at)).collect();
-        let motion = if supports.is_empty() { "fall" } else { "rotate about its only support" };
-        return Err(Error::Unstable { supports: listed.join(", "), motion });
-    }
     Ok(supports)
+}
+
+/// Hinges in order, each inside the beam, none twice, none where a support holds the rotation.
+fn checked_hinges(length: f64, mut hinges: Vec<f64>, supports: &[Support]) -> Result<Vec<f64>, Error> {
+    let near = COINCIDENT * length;
+    if hinges.len() > MAX_STATIONS {
+        let allowed = format!("at most {MAX_STATIONS}");
+        return Err(Error::input("hinges", format!("{} hinges", hinges.len()), allowed));
+    }
+    for (i, hinge) in hinges.iter_mut().enumerate() {
+        let key = format!("hinges[{i}]");
+        if !(hinge.is_finite() && *hinge > near && *hinge < length - near) {
+            let allowed =
+                format!("must lie inside the beam, between 0 and {length} m; its ends carry no moment unless held");
+            return Err(Error::input(key, format!("{hinge} m"), allowed));
+        }
+        if let Some(support) = supports.iter().find(|s| (s.at - *hinge).abs() <= near) {
+            if support.fixity.rotation() > 0.0 {
+                let allowed = "must not stand on a support that holds the rotation: put it to the side that is \
+                               released, or leave the support pinned";
+                return Err(Error::input(key, format!("{hinge} m"), allowed));
+            }
+            *hinge = support.at;
+        }
+    }
+    hinges.sort_by(f64::total_cmp);
+    for pair in hinges.windows(2) {
+        if pair[1] - pair[0] <= near {
+            let value = format!("{} m and {} m", pair[0], pair[1]);
+            return Err(Error::input("hinges", value, "two hinges must not stand at the same position"));
+        }
+    }
+    Ok(hinges)
 }
 
 fn on_the_bridge(key: &str, at: f64, length: f64) -> Result<(), Error> {
@@ -252,26 +392,9 @@ fn too_many(key: &str, count: usize) -> Error {
     Error::input(key, format!("{count} stations"), format!("at most {MAX_STATIONS} mass stations in all"))
 }
 
-fn indexed(key: &str, i: usize, n: usize) -> String {
-    if n == 1 { key.to_string() } else { format!("{key}[{i}]") }
-}
-
-/// A list of one value per span from one value or as many as there are spans.
-fn per_span(key: &str, values: &[f64], spans: usize) -> Result<Vec<f64>, Error> {
-    match values.len() {
-        1 => Ok(vec![values[0]; spans]),
-        n if n == spans => Ok(values.to_vec()),
-        n => Err(Error::input(
-            key,
-            format!("{n} values"),
-            format!("give one number, or one for each of the {spans} spans (overhangs count as spans)"),
-        )),
-    }
-}
-
 /// n equal shares of every span, the mass of each in its middle.
-fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<Station>, Error> {
-    let spans = mass.len();
+fn equal_shares(bounds: &[f64], mass: &Distribution, counts: &[usize]) -> Result<Vec<Station>, Error> {
+    let spans = bounds.len() - 1;
     if counts.len() != 1 && counts.len() != spans {
         return Err(Error::input(
             "stations_per_span",
@@ -287,13 +410,14 @@ fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<St
     let mut stations = Vec::with_capacity(total);
     for span in 0..spans {
         let count = count_of(span);
-        if count == 0 && mass[span] > 0.0 {
+        if count == 0 && mass.integral(bounds[span], bounds[span + 1]) > 0.0 {
             return Err(Error::input("stations_per_span", 0, "must be 1 or more in a span that has mass"));
         }
         let share = (bounds[span + 1] - bounds[span]) / count as f64;
-        stations.extend(
-            (0..count).map(|i| Station { at: bounds[span] + share * (i as f64 + 0.5), mass: mass[span] * share }),
-        );
+        stations.extend((0..count).map(|i| {
+            let from = bounds[span] + share * i as f64;
+            Station { at: bounds[span] + share * (i as f64 + 0.5), mass: mass.integral(from, from + share) }
+        }));
     }
     Ok(stations)
 }
@@ -301,7 +425,7 @@ fn equal_shares(bounds: &[f64], mass: &[f64], counts: &[usize]) -> Result<Vec<St
 /// Each station takes the mass up to half-way to its neighbours; no share reaches across a support.
 fn tributary_shares(
     bounds: &[f64],
-    mass: &[f64],
+    mass: &Distribution,
     positions: &[f64],
     held: &dyn Fn(f64) -> bool,
 ) -> Result<Vec<Station>, Error> {
@@ -321,10 +445,10 @@ fn tributary_shares(
         }
     }
     let mut stations: Vec<Station> = positions.iter().map(|&at| Station { at, mass: 0.0 }).collect();
-    for (span, bound) in bounds.windows(2).enumerate() {
+    for bound in bounds.windows(2) {
         let first = positions.partition_point(|&x| x < bound[0] - near);
         let last = positions.partition_point(|&x| x <= bound[1] + near);
-        if positions[first..last].iter().all(|&x| held(x)) && mass[span] > 0.0 {
+        if positions[first..last].iter().all(|&x| held(x)) && mass.integral(bound[0], bound[1]) > 0.0 {
             return Err(Error::input(
                 "stations",
                 format!("none from {} m to {} m", bound[0], bound[1]),
@@ -334,7 +458,7 @@ fn tributary_shares(
         for i in first..last {
             let from = if i == first { bound[0] } else { 0.5 * (positions[i - 1] + positions[i]) };
             let to = if i + 1 == last { bound[1] } else { 0.5 * (positions[i] + positions[i + 1]) };
-            stations[i].mass += mass[span] * (to - from);
+            stations[i].mass += mass.integral(from, to);
         }
     }
     Ok(stations)

@@ -43,6 +43,13 @@ const WAY_PER_STEP: f64 = 0.05;
 pub enum Damping {
     /// Ratio to critical, one for all modes or one for each.
     Ratios(Vec<f64>),
+    /// C = αM + βK, for α [1/s] and β [s]: the ratio of a mode is α/2ω + βω/2.
+    Rayleigh {
+        /// α [1/s].
+        mass: f64,
+        /// β [s].
+        stiffness: f64,
+    },
     /// C at the mass stations [N s/m]: D = ΦᵀCΦ is full in general.
     Viscous(Mat<f64>),
 }
@@ -63,6 +70,20 @@ impl Damping {
                 }
                 let all = (0..modes.len()).map(|m| if ratios.len() == 1 { ratios[0] } else { ratios[m] });
                 Ok(ModalDamping::Classical(all.collect()))
+            }
+            Damping::Rayleigh { mass, stiffness } => {
+                not_negative("damping alpha", *mass)?;
+                not_negative("damping beta", *stiffness)?;
+                let ratios: Vec<f64> = modes.omega.iter().map(|w| 0.5 * (mass / w + stiffness * w)).collect();
+                if let Some(m) = ratios.iter().position(|ratio| *ratio >= 1.0) {
+                    let allowed = "Rayleigh damping must stay below critical in every included mode";
+                    return Err(Error::input(
+                        "damping",
+                        format!("{} of critical in mode {}", ratios[m], m + 1),
+                        allowed,
+                    ));
+                }
+                Ok(ModalDamping::Classical(ratios))
             }
             Damping::Viscous(c) => {
                 let n = modes.shapes.nrows();

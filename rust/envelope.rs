@@ -91,6 +91,15 @@ impl Extremes {
 }
 
 impl Envelope {
+    /// Puts NaN in place of everything.
+    pub fn forget(&mut self) {
+        let nothing = Extreme { value: f64::NAN, time: f64::NAN, position: f64::NAN, partner: f64::NAN };
+        for extremes in [&mut self.dynamic, &mut self.at_rest] {
+            extremes.max.fill(nothing);
+            extremes.min.fill(nothing);
+        }
+    }
+
     /// Of some of the responses.
     pub fn of(&self, range: std::ops::Range<usize>) -> Self {
         Envelope { dynamic: self.dynamic.of(range.clone()), at_rest: self.at_rest.of(range) }

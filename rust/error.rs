@@ -24,6 +24,18 @@ pub enum Error {
         /// The rigid-body motion that nothing prevents.
         motion: &'static str,
     },
+    /// The hinges leave parts of the beam free to turn.
+    #[error(
+        "hinges[{hinge}] = {at} m: makes a mechanism of the bridge, which can turn there without resistance{}; \
+         take it out or add a support",
+        if *hinge > 0 { " now that the hinges to its left do" } else { "" }
+    )]
+    Mechanism {
+        /// Number of the first hinge, left to right, that turns freely.
+        hinge: usize,
+        /// Its position [m].
+        at: f64,
+    },
     /// A time step beyond the stability limit of the chosen Newmark scheme.
     #[error(
         "step = {step} s: Newmark with beta = {beta} is stable only for steps up to {limit:.6e} s here \
@@ -87,7 +99,10 @@ impl Error {
 
     /// Whether the caller's input is at fault (otherwise the numerics are, or the user interrupted).
     pub fn is_input(&self) -> bool {
-        matches!(self, Error::Input { .. } | Error::Unstable { .. } | Error::StepTooLong { .. })
+        matches!(
+            self,
+            Error::Input { .. } | Error::Unstable { .. } | Error::Mechanism { .. } | Error::StepTooLong { .. }
+        )
     }
 }
 

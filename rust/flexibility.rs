@@ -4,14 +4,15 @@
 //! coordinates", IABSE Publications 33 (1973), cited as KTN73 here and in the files that follow.
 //!
 //! A statically determinate beam is integrated panel by panel, exactly. Restraints are then added in two layers: the
-//! other outer support makes it the *basic bridge*, the intermediate redundant supports make it the actual bridge.
-//! Each layer is KTN73 Eqs. 12–14 with a unit action for the load. No stiffness matrix is formed or inverted except
-//! K^R, of the order of the number of redundants.
+//! other outer restraints make it the *basic bridge*, the intermediate redundant ones make it the bridge without its
+//! hinges. Each layer is KTN73 Eqs. 12–14 with a unit action for the load; a spring adds its compliance to the diagonal
+//! of the restraints' flexibility. Hinges come last, as the kinks that take the moments there away. No stiffness matrix
+//! is formed or inverted except K^R, of the order of the number of redundants.
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-use crate::bridge::{Bridge, Fixity};
+use crate::bridge::Bridge;
 use crate::error::Error;
 use crate::line::{Line, Mesh};
 
@@ -22,7 +23,8 @@ pub enum Action {
     Force(usize),
     /// Unit couple, in the sense of positive slope dw/dx (clockwise, with x to the right and w down).
     Couple(usize),
-    /// Slope falling by one at the node: by reciprocity, the influence line of the bending moment there.
+    /// Slope falling by one at the node: by reciprocity, the influence line of the bending moment there. A support that
+    /// holds the rotation at the node stays with the part to the right, so the moment is the one just left of it.
     Kink(usize),
     /// Deflection rising by one at the node: the influence line of the shear there. A support at the node stays with
     /// the part to the right.
@@ -43,7 +45,7 @@ pub enum Restraint {
 /// Which structure is deflected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Structure {
-    /// The bridge without its intermediate redundant supports (KTN73 §2.3).
+    /// The bridge without its hinges and its intermediate redundant supports (KTN73 §2.3).
     Basic,
     /// The bridge as it is.
     Actual,
@@ -52,25 +54,33 @@ pub enum Structure {
 /// The statically determinate beam at the bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Determinate {
-    CantileverFromLeft,
-    CantileverFromRight,
+    /// Held at one node, deflection and slope.
+    Cantilever(usize),
     /// Resting on two nodes, with overhangs where these are not the ends.
     SimplySupported(usize, usize),
 }
+
+/// A restraint, and how far it gives way under a unit force or couple [m/N or rad/(N m)]: zero where it is rigid.
+type Spring = (Restraint, f64);
 
 /// Restraints added to the structure below, with its deflected shapes under their unit forces.
 #[derive(Debug, Clone)]
 struct Layer {
     restraints: Vec<Restraint>,
     lines: Vec<Line>,
-    /// Cholesky factor of the restraints' flexibility in the structure below: F*_RR for the intermediate supports.
+    /// Cholesky factor of the restraints' flexibility in the structure below, their own included: F*_RR + C_s for the
+    /// intermediate supports.
     factor: Option<Llt<f64>>,
 }
 
 impl Layer {
-    fn new(mesh: &Mesh, restraints: Vec<Restraint>, lines: Vec<Line>) -> Result<Self, Error> {
-        let n = restraints.len();
-        let flexibility = Mat::from_fn(n, n, |i, j| displacement(mesh, &lines[j.min(i)], restraints[j.max(i)]));
+    fn new(mesh: &Mesh, springs: &[Spring], lines: Vec<Line>) -> Result<Self, Error> {
+        let n = springs.len();
+        let restraints: Vec<Restraint> = springs.iter().map(|s| s.0).collect();
+        let flexibility = Mat::from_fn(n, n, |i, j| {
+            let own = if i == j { springs[i].1 } else { 0.0 };
+            displacement(mesh, &lines[j.min(i)], restraints[j.max(i)]) + own
+        });
         let factor = match n {
             0 => None,
             _ => Some(Llt::new(flexibility.as_ref(), Side::Lower).map_err(|e| Error::Singular(format!("{e:?}")))?),
@@ -78,7 +88,8 @@ impl Layer {
         Ok(Layer { restraints, lines, factor })
     }
 
-    /// Restraint forces (down; couples in the sense of positive slope) that displace the restraints by `displacements`.
+    /// Restraint forces (down; couples in the sense of positive slope) that displace the restraints by `displacements`,
+    /// their springs included.
     fn forces(&self, displacements: &[f64]) -> Vec<f64> {
         let Some(factor) = &self.factor else { return Vec::new() };
         let mut forces = Mat::from_fn(displacements.len(), 1, |i, _| displacements[i]);
@@ -100,6 +111,65 @@ impl Layer {
     }
 }
 
+/// The hinges, with the shapes of the bridge without them under a unit kink at each.
+#[derive(Debug, Clone)]
+struct Hinges {
+    nodes: Vec<usize>,
+    lines: Vec<Line>,
+    /// Cholesky factor of the moments that resist these kinks [N m/rad].
+    factor: Option<Llt<f64>>,
+}
+
+/// A hinge turns freely if what resists its kink is less than this fraction of EI/L, or if all but this fraction of it
+/// is gone once the hinges to its left turn too. Rounding leaves about 10⁻¹³; two hinges L/10⁴ apart leave 10⁻⁸.
+const FREE_TO_TURN: f64 = 1e-10;
+
+impl Hinges {
+    fn none() -> Self {
+        Hinges { nodes: Vec::new(), lines: Vec::new(), factor: None }
+    }
+
+    /// `lines` are the shapes under a unit kink at each of the `nodes`, left to right.
+    fn new(nodes: Vec<usize>, lines: Vec<Line>, flexibility: &Flexibility) -> Result<Self, Error> {
+        let n = nodes.len();
+        if n == 0 {
+            return Ok(Hinges::none());
+        }
+        // Symmetric by reciprocity.
+        let resistance = Mat::from_fn(n, n, |i, j| -flexibility.bending_moment(&lines[j.min(i)], nodes[j.max(i)]));
+        let stiffest = flexibility.flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
+        let scale = stiffest / flexibility.mesh.length();
+        let mut lower = Mat::<f64>::zeros(n, n);
+        for j in 0..n {
+            let known = |i: usize, lower: &Mat<f64>| (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
+            let whole = resistance[(j, j)];
+            let left = whole - known(j, &lower);
+            // Written so that a NaN fails.
+            if !(whole > FREE_TO_TURN * scale && left > FREE_TO_TURN * whole) {
+                let at = flexibility.mesh.nodes()[nodes[j]];
+                return Err(Error::Mechanism { hinge: j, at });
+            }
+            let root = left.sqrt();
+            for i in j..n {
+                lower[(i, j)] = (resistance[(i, j)] - known(i, &lower)) / root;
+            }
+        }
+        let factor = Llt::new(resistance.as_ref(), Side::Lower).map_err(|e| Error::Singular(format!("{e:?}")))?;
+        Ok(Hinges { nodes, lines, factor: Some(factor) })
+    }
+
+    /// Takes the moments at the hinges out of a shape of the bridge without hinges.
+    fn release(&self, flexibility: &Flexibility, line: &mut Line) {
+        let Some(factor) = &self.factor else { return };
+        // M_h + Σ α_j M_h(kink j) = 0.
+        let mut kinks = Mat::from_fn(self.nodes.len(), 1, |i, _| flexibility.bending_moment(line, self.nodes[i]));
+        factor.solve_in_place(kinks.as_mut());
+        for (&kink, unit) in kinks.col(0).iter().zip(&self.lines) {
+            line.add_scaled(kink, unit);
+        }
+    }
+}
+
 fn displacement(mesh: &Mesh, line: &Line, restraint: Restraint) -> f64 {
     match restraint {
         Restraint::Deflection(node) => line.at_node(node),
@@ -115,51 +185,66 @@ pub struct Flexibility {
     flexural_rigidity: Vec<f64>,
     determinate: Determinate,
     /// Restraints of the determinate beam, left to right.
-    support: Vec<Restraint>,
+    support: Vec<Spring>,
     /// The outer redundants, then the intermediate ones.
     layers: [Layer; 2],
+    hinges: Hinges,
 }
 
 impl Flexibility {
-    /// Of `bridge`, with nodes at its stations, supports, changes of EI and at `sections` [m].
+    /// Of `bridge`, with nodes at its stations, supports, hinges, changes of EI and at `sections` [m].
+    ///
+    /// Fails if the hinges make a mechanism of the bridge.
     pub fn new(bridge: &Bridge, sections: &[f64]) -> Result<Self, Error> {
-        let stations = bridge.stations().iter().map(|s| s.at);
-        let points = bridge.span_bounds().iter().copied().chain(stations).chain(sections.iter().copied());
-        let mesh = Mesh::new(bridge.length(), points);
-        let flexural_rigidity = mesh.nodes()[..mesh.panels()].iter().map(|&x| bridge.flexural_rigidity_at(x)).collect();
+        let mesh = Mesh::new(bridge.length(), bridge.points().chain(sections.iter().copied()));
+        let middle = |panel: usize| mesh.nodes()[panel] + 0.5 * mesh.width(panel);
+        let flexural_rigidity = (0..mesh.panels()).map(|p| bridge.flexural_rigidity_at(middle(p))).collect();
 
         let supports = bridge.supports();
-        let node = |i: usize| mesh.node_at(supports[i].at);
         let last = supports.len() - 1;
-        let clamped = |i: usize| supports[i].fixity == Fixity::Clamped;
-        let mut outer = Vec::new();
-        let (determinate, support) = if clamped(0) && supports[0].at == 0.0 {
-            if last > 0 {
-                outer.push(Restraint::Deflection(node(last)));
-                if clamped(last) {
-                    outer.push(Restraint::Slope(node(last)));
-                }
-            }
-            (Determinate::CantileverFromLeft, vec![Restraint::Deflection(0), Restraint::Slope(0)])
-        } else if clamped(last) {
-            if last > 0 {
-                outer.push(Restraint::Deflection(node(0)));
-            }
-            let end = mesh.panels();
-            (Determinate::CantileverFromRight, vec![Restraint::Deflection(end), Restraint::Slope(end)])
-        } else {
-            let (a, b) = (node(0), node(last));
-            (Determinate::SimplySupported(a, b), vec![Restraint::Deflection(a), Restraint::Deflection(b)])
+        let node = |i: usize| mesh.node_at(supports[i].at);
+        let deflection = |i: usize| (Restraint::Deflection(node(i)), 1.0 / supports[i].fixity.vertical());
+        // The rotation of a support that holds it in some way.
+        let slope = |i: usize| {
+            let stiffness = supports[i].fixity.rotation();
+            (stiffness > 0.0).then(|| (Restraint::Slope(node(i)), 1.0 / stiffness))
         };
-        let intermediate: Vec<Restraint> = (1..last.max(1)).map(|i| Restraint::Deflection(node(i))).collect();
+        let built_in = |i: usize| supports[i].fixity == crate::bridge::Fixity::Clamped;
+        let mut outer: Vec<Spring> = Vec::new();
+        let (determinate, support) = if last == 0 || (built_in(0) && supports[0].at == 0.0) {
+            if last > 0 {
+                outer.push(deflection(last));
+                outer.extend(slope(last));
+            }
+            (Determinate::Cantilever(node(0)), [Some(deflection(0)), slope(0)].into_iter().flatten().collect())
+        } else if built_in(last) && supports[last].at == bridge.length() {
+            outer.push(deflection(0));
+            outer.extend(slope(0));
+            (Determinate::Cantilever(node(last)), [Some(deflection(last)), slope(last)].into_iter().flatten().collect())
+        } else {
+            outer.extend(slope(0));
+            outer.extend(slope(last));
+            (Determinate::SimplySupported(node(0), node(last)), vec![deflection(0), deflection(last)])
+        };
+        let intermediate: Vec<Spring> =
+            (1..last.max(1)).flat_map(|i| [Some(deflection(i)), slope(i)]).flatten().collect();
 
         let none = Layer { restraints: Vec::new(), lines: Vec::new(), factor: None };
-        let mut flexibility =
-            Flexibility { mesh, flexural_rigidity, determinate, support, layers: [none.clone(), none] };
-        for (depth, restraints) in [outer, intermediate].into_iter().enumerate() {
-            let lines = restraints.iter().map(|&r| flexibility.deflected_to(unit_force(r), depth)).collect();
-            flexibility.layers[depth] = Layer::new(&flexibility.mesh, restraints, lines)?;
+        let hinges: Vec<usize> = bridge.hinges().iter().map(|&x| mesh.node_at(x)).collect();
+        let mut flexibility = Flexibility {
+            mesh,
+            flexural_rigidity,
+            determinate,
+            support,
+            layers: [none.clone(), none],
+            hinges: Hinges::none(),
+        };
+        for (depth, springs) in [outer, intermediate].into_iter().enumerate() {
+            let lines = springs.iter().map(|&(r, _)| flexibility.deflected_to(unit_force(r), depth)).collect();
+            flexibility.layers[depth] = Layer::new(&flexibility.mesh, &springs, lines)?;
         }
+        let lines = hinges.iter().map(|&node| flexibility.deflected_to(Action::Kink(node), 2)).collect();
+        flexibility.hinges = Hinges::new(hinges, lines, &flexibility)?;
         Ok(flexibility)
     }
 
@@ -170,37 +255,69 @@ impl Flexibility {
 
     /// Deflected shape under a unit action [m per N, per N m, per rad or per m].
     pub fn deflected(&self, action: Action, structure: Structure) -> Line {
-        self.deflected_to(
-            action,
-            match structure {
-                Structure::Basic => 1,
-                Structure::Actual => 2,
-            },
-        )
+        match structure {
+            Structure::Basic => self.deflected_to(action, 1),
+            Structure::Actual => {
+                let mut line = self.deflected_to(action, 2);
+                self.hinges.release(self, &mut line);
+                line
+            }
+        }
+    }
+
+    /// Nodes of the hinges, left to right.
+    pub fn hinges(&self) -> &[usize] {
+        &self.hinges.nodes
+    }
+
+    /// Bending moment just left of a node in a deflected shape, −EI w'' [N m]; at the left end just right of it.
+    pub fn bending_moment(&self, line: &Line, node: usize) -> f64 {
+        let (panel, fraction) = if node == 0 { (0, 0.0) } else { (node - 1, 1.0) };
+        self.moment_in(line, panel, fraction)
+    }
+
+    /// Bending moment at a fraction of a panel, −EI w'' [N m].
+    pub fn moment_in(&self, line: &Line, panel: usize, fraction: f64) -> f64 {
+        let [_, _, c2, c3] = line.cubics()[panel];
+        -self.flexural_rigidity[panel] / self.mesh.width(panel).powi(2) * (2.0 * c2 + 6.0 * c3 * fraction)
+    }
+
+    /// Shear in a panel, the derivative of the bending moment [N].
+    pub fn shear_in(&self, line: &Line, panel: usize) -> f64 {
+        -self.flexural_rigidity[panel] / self.mesh.width(panel).powi(3) * 6.0 * line.cubics()[panel][3]
     }
 
     /// The restraints of the basic bridge, left to right: deflection before slope.
     pub fn outer_restraints(&self) -> Vec<Restraint> {
-        let mut all: Vec<Restraint> = self.support.iter().chain(&self.layers[0].restraints).copied().collect();
-        all.sort_by_key(|r| match *r {
-            Restraint::Deflection(node) => (node, 0),
-            Restraint::Slope(node) => (node, 1),
-        });
+        let mut all: Vec<Restraint> =
+            self.support.iter().map(|s| s.0).chain(self.layers[0].restraints.iter().copied()).collect();
+        all.sort_by_key(order);
         all
     }
 
-    /// The intermediate redundant supports, left to right.
+    /// The restraints of the intermediate redundant supports, left to right: deflection before slope.
     pub fn redundants(&self) -> &[Restraint] {
         &self.layers[1].restraints
     }
 
-    /// R = −K^R y^R: the redundant reactions as loads (down) that undo the deflections y^R [m] (KTN73 Eq. 13).
+    /// All restraints of a structure, left to right: deflection before slope.
+    pub fn restraints(&self, structure: Structure) -> Vec<Restraint> {
+        let mut all = self.outer_restraints();
+        if structure == Structure::Actual {
+            all.extend(self.redundants());
+        }
+        all.sort_by_key(order);
+        all
+    }
+
+    /// R = −K^R y^R: the redundant reactions as loads (down, couples in the sense of positive slope) that undo the
+    /// deflections y^R [m] and slopes [rad] (KTN73 Eq. 13).
     pub fn redundant_reactions(&self, deflections: &[f64]) -> Vec<f64> {
         let opposite: Vec<f64> = deflections.iter().map(|y| -y).collect();
         self.layers[1].forces(&opposite)
     }
 
-    /// K^R, the inverse of F*_RR, by its Cholesky factor [N/m] (KTN73 §2.3).
+    /// K^R, the inverse of F*_RR and the redundants' own flexibility, by its Cholesky factor [N/m] (KTN73 §2.3).
     pub fn redundant_stiffness(&self) -> Mat<f64> {
         let n = self.redundants().len();
         let columns: Vec<Vec<f64>> =
@@ -217,8 +334,10 @@ impl Flexibility {
     /// Nodes of the mass stations and the intermediate redundant supports, left to right: the order of F* in KTN73.
     pub fn reference_nodes(&self, bridge: &Bridge) -> Vec<usize> {
         let mut nodes: Vec<usize> = bridge.stations().iter().map(|s| self.mesh.node_at(s.at)).collect();
-        nodes.extend(self.redundants().iter().map(|r| r.node()));
+        nodes.extend(self.redundants().iter().filter(|r| matches!(r, Restraint::Deflection(_))).map(|r| r.node()));
         nodes.sort_unstable();
+        // A mass on a spring support is both.
+        nodes.dedup();
         nodes
     }
 
@@ -245,13 +364,30 @@ impl Flexibility {
         line
     }
 
-    /// Shape of the determinate beam: moments from the left, curvature −M/EI integrated twice, rigid body to the supports.
+    /// Shape of the determinate beam on its springs: on rigid supports, and each spring gives way under its reaction.
     fn determinate_shape(&self, action: Action) -> Line {
-        let x = self.mesh.nodes();
-        let end = self.mesh.panels();
         if let Action::Settlement(restraint) = action {
             return self.rigid_settlement(restraint);
         }
+        let mut line = self.rigidly_supported_shape(action);
+        for &(restraint, compliance) in self.support.iter().filter(|s| s.1 > 0.0) {
+            let settled = self.rigid_settlement(restraint);
+            // By virtual work the reaction, here as a load on the spring, is what the action does on a unit settlement;
+            // a kink or a jump calls for none.
+            let load = match action {
+                Action::Force(node) => settled.at_node(node),
+                Action::Couple(node) => settled.slope_at_node(&self.mesh, node),
+                Action::Kink(_) | Action::Jump(_) | Action::Settlement(_) => 0.0,
+            };
+            line.add_scaled(compliance * load, &settled);
+        }
+        line
+    }
+
+    /// Moments from the left, curvature −M/EI integrated twice, rigid body to the supports.
+    fn rigidly_supported_shape(&self, action: Action) -> Line {
+        let x = self.mesh.nodes();
+        let end = self.mesh.panels();
         let (force, couple, at) = match action {
             Action::Force(node) => (1.0, 0.0, node),
             Action::Couple(node) => (0.0, 1.0, node),
@@ -268,9 +404,7 @@ impl Flexibility {
                 _ => {}
             }
             let h = self.mesh.width(panel);
-            // A couple at a node acts on the panel to its right.
-            let couple_here = if at <= panel { couple } else { 0.0 };
-            let moment = |node: usize| self.determinate_moment(x[node], x[at], force, couple) + couple_here;
+            let moment = |node: usize| self.determinate_moment(panel, x[node], at, force, couple);
             let (left, right) = (moment(panel), moment(panel + 1));
             let scale = h * h / self.flexural_rigidity[panel];
             let cubic = [w, slope * h, -0.5 * scale * left, -scale * (right - left) / 6.0];
@@ -280,8 +414,10 @@ impl Flexibility {
         }
         let mut line = Line::from_cubics(cubics);
         let (a, b) = match self.determinate {
-            Determinate::CantileverFromLeft => (0.0, 0.0),
-            Determinate::CantileverFromRight => (-(w - slope * x[end]), -slope),
+            Determinate::Cantilever(node) => {
+                let (w, slope) = (line.at_node(node), line.slope_at_node(&self.mesh, node));
+                (-(w - slope * x[node]), -slope)
+            }
             Determinate::SimplySupported(left, right) => {
                 let (wl, wr) = (line.at_node(left), line.at_node(right));
                 let b = -(wr - wl) / (x[right] - x[left]);
@@ -292,20 +428,20 @@ impl Flexibility {
         line
     }
 
-    /// Bending moment at x of the determinate beam under a force at `at` and the reactions to a force and a couple
-    /// there, from everything to the left of x except the couple itself.
-    fn determinate_moment(&self, x: f64, at: f64, force: f64, couple: f64) -> f64 {
-        let arm = |from: f64| if x > from { x - from } else { 0.0 };
+    /// Bending moment at x in a panel of the determinate beam, under a force and a couple at a node and the reactions to
+    /// them: from everything to the left. A couple at a node acts on the panel to its right.
+    fn determinate_moment(&self, panel: usize, x: f64, at: usize, force: f64, couple: f64) -> f64 {
+        let nodes = self.mesh.nodes();
+        let arm = |node: usize| if x > nodes[node] { x - nodes[node] } else { 0.0 };
         let reactions = match self.determinate {
-            Determinate::CantileverFromLeft => force * x - force * at - couple,
-            Determinate::CantileverFromRight => 0.0,
+            Determinate::Cantilever(held) if held > panel => 0.0,
+            Determinate::Cantilever(held) => force * (x - nodes[held]) + force * (nodes[held] - nodes[at]) - couple,
             Determinate::SimplySupported(left, right) => {
-                let (a, b) = (self.mesh.nodes()[left], self.mesh.nodes()[right]);
-                let at_b = (force * (at - a) + couple) / (b - a);
-                (force - at_b) * arm(a) + at_b * arm(b)
+                let at_right = (force * (nodes[at] - nodes[left]) + couple) / (nodes[right] - nodes[left]);
+                (force - at_right) * arm(left) + at_right * arm(right)
             }
         };
-        reactions - force * arm(at)
+        reactions - force * arm(at) + if at <= panel { couple } else { 0.0 }
     }
 
     fn rigid_settlement(&self, restraint: Restraint) -> Line {
@@ -320,6 +456,14 @@ impl Flexibility {
             (_, Restraint::Slope(node)) => (-x[node], 1.0),
         };
         Line::straight(&self.mesh, a, b)
+    }
+}
+
+/// Left to right, deflection before slope.
+fn order(restraint: &Restraint) -> (usize, u8) {
+    match *restraint {
+        Restraint::Deflection(node) => (node, 0),
+        Restraint::Slope(node) => (node, 1),
     }
 }
 

@@ -22,7 +22,8 @@ pub enum Quantity {
     ShearRight,
     /// Vertical reactions of the supports, on the bridge [N].
     Reaction,
-    /// Moments of the clamped ends, on the bridge [N m].
+    /// Moments of the supports that hold the rotation, on the bridge [N m]: at an end sagging, elsewhere the rise of the
+    /// bending moment across the support.
     ClampMoment,
 }
 
@@ -36,6 +37,18 @@ impl Quantity {
         Quantity::Reaction,
         Quantity::ClampMoment,
     ];
+
+    /// What it is called in messages and among the arguments of a bridge given by its modes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Deflection => "deflection",
+            Quantity::Moment => "moment",
+            Quantity::ShearLeft => "shear-left",
+            Quantity::ShearRight => "shear-right",
+            Quantity::Reaction => "reaction",
+            Quantity::ClampMoment => "clamp-moment",
+        }
+    }
 }
 
 /// Slope at a node [rad] per unit load along the bridge.
@@ -48,20 +61,25 @@ pub fn deflection(flexibility: &Flexibility, node: usize, structure: Structure) 
     flexibility.deflected(Action::Force(node), structure)
 }
 
-/// Reaction of a restraint per unit load along the bridge: a force up [N/N] or a clamp moment, sagging [N m/N].
+/// Reaction of a restraint per unit load along the bridge: a force up [N/N]; of a rotational one at an end of the bridge
+/// the sagging moment there, elsewhere the couple in the sense of positive slope, by which the bending moment is greater
+/// just right of it than just left [N m/N].
 pub fn reaction(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
     let line = flexibility.deflected(Action::Settlement(restraint), structure);
     match restraint {
-        // At the left end a sagging moment acts in the sense of positive slope, so the work changes sign.
-        Restraint::Slope(0) => line.scaled(-1.0),
+        // A couple in the sense of positive slope opposes the settlement, so its work changes sign; at the right end
+        // the sagging moment is the opposite couple.
+        Restraint::Slope(node) if node < flexibility.mesh().panels() => line.scaled(-1.0),
         _ => line,
     }
 }
 
-/// Bending moment at a node [N m/N] per unit load along the bridge.
+/// Bending moment at a node [N m/N] per unit load along the bridge: just left of it, where a support holds the rotation.
 pub fn moment(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
     if node == 0 || node == flexibility.mesh().panels() {
         held(flexibility, Restraint::Slope(node), structure)
+    } else if structure == Structure::Actual && flexibility.hinges().contains(&node) {
+        Line::straight(flexibility.mesh(), 0.0, 0.0)
     } else {
         flexibility.deflected(Action::Kink(node), structure)
     }
@@ -87,17 +105,21 @@ pub fn shear(flexibility: &Flexibility, node: usize, structure: Structure) -> [L
 
 /// Reaction of a restraint if the structure has it, else zero.
 fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
-    let has = flexibility.outer_restraints().contains(&restraint)
-        || (structure == Structure::Actual && flexibility.redundants().contains(&restraint));
-    if has { reaction(flexibility, restraint, structure) } else { Line::straight(flexibility.mesh(), 0.0, 0.0) }
+    if flexibility.restraints(structure).contains(&restraint) {
+        reaction(flexibility, restraint, structure)
+    } else {
+        Line::straight(flexibility.mesh(), 0.0, 0.0)
+    }
 }
 
 /// Every response looked at: deflection, moment and both shears at the sections, reactions, clamp moments.
 #[derive(Debug, Clone)]
 pub struct Responses {
     sections: Vec<usize>,
-    /// Vertical restraints, left to right, then the clamps.
-    restraints: [Vec<Restraint>; 2],
+    /// Number of reactions; the clamp moments come after them.
+    reactions: usize,
+    /// Nodes at which deflection is held.
+    held: Vec<usize>,
     lines: Vec<Line>,
 }
 
@@ -111,12 +133,12 @@ impl Responses {
     ) -> Result<Self, Error> {
         let mesh = flexibility.mesh();
         let sections: Vec<usize> = sections.iter().map(|&x| mesh.node_at(x)).collect();
-        let vertical: Vec<Restraint> =
-            bridge.supports().iter().map(|s| Restraint::Deflection(mesh.node_at(s.at))).collect();
-        let clamps: Vec<Restraint> =
-            flexibility.outer_restraints().into_iter().filter(|r| matches!(r, Restraint::Slope(_))).collect();
-
+        let rigid = bridge.supports().iter().filter(|s| s.fixity.vertical().is_infinite());
+        let held = rigid.map(|s| mesh.node_at(s.at)).collect();
         let actual = Structure::Actual;
+        let (clamps, vertical): (Vec<Restraint>, Vec<Restraint>) =
+            flexibility.restraints(actual).into_iter().partition(|r| matches!(r, Restraint::Slope(_)));
+
         let mut by_quantity: [Vec<Line>; 4] = Default::default();
         for &node in &sections {
             let [left, right] = shear(flexibility, node, actual);
@@ -128,7 +150,24 @@ impl Responses {
         }
         let mut lines: Vec<Line> = by_quantity.into_iter().flatten().collect();
         lines.extend(vertical.iter().chain(&clamps).map(|&r| reaction(flexibility, r, actual)));
-        Ok(Responses { sections, restraints: [vertical, clamps], lines })
+        Ok(Responses { sections, reactions: vertical.len(), held, lines })
+    }
+
+    /// From their influence lines: deflections, moments, shears on the left and on the right of every section (nodes),
+    /// then so many reactions, then clamp moments; `held` are the nodes at which deflection is held.
+    pub fn from_lines(sections: Vec<usize>, reactions: usize, held: Vec<usize>, lines: Vec<Line>) -> Self {
+        Responses { sections, reactions, held, lines }
+    }
+
+    /// The same of some of the sections only, by their numbers.
+    pub fn of_sections(&self, chosen: &[usize]) -> Self {
+        let n = self.sections.len();
+        let lines = (0..4).flat_map(|quantity| chosen.iter().map(move |s| quantity * n + s)).chain(4 * n..self.len());
+        Responses {
+            sections: chosen.iter().map(|&s| self.sections[s]).collect(),
+            lines: lines.map(|r| self.lines[r].clone()).collect(),
+            ..self.clone()
+        }
     }
 
     /// Nodes of the sections.
@@ -149,7 +188,7 @@ impl Responses {
     /// Indices of the responses of one kind, in the order of sections or of restraints.
     pub fn range(&self, quantity: Quantity) -> std::ops::Range<usize> {
         let n = self.sections.len();
-        let vertical = self.restraints[0].len();
+        let vertical = self.reactions;
         match quantity {
             Quantity::Deflection => 0..n,
             Quantity::Moment => n..2 * n,
@@ -160,9 +199,9 @@ impl Responses {
         }
     }
 
-    /// Whether a support holds the deflection at a node.
+    /// Whether a support holds the deflection at a node; one on a spring does not.
     pub fn supported(&self, node: usize) -> bool {
-        self.restraints[0].contains(&Restraint::Deflection(node))
+        self.held.contains(&node)
     }
 
     /// The influence lines.

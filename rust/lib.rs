@@ -7,12 +7,14 @@
 
 pub mod error;
 
+pub mod along;
 pub mod bridge;
 pub mod line;
 
 pub mod flexibility;
 pub mod influence;
 pub mod modes;
+pub mod settlement;
 
 pub mod assembly;
 pub mod vehicle;
@@ -42,6 +44,9 @@ pub mod sequence;
 
 pub mod envelope;
 pub mod survey;
+
+pub mod given;
+pub mod interpolation;
 
 pub mod analysis;
 

@@ -34,8 +34,17 @@ impl Modes {
             return Err(Error::input("modes", count, format!("must be 1 to {n}, the number of masses that can move")));
         }
         let nodes: Vec<usize> = stations.iter().map(|s| flexibility.mesh().node_at(s.at)).collect();
-        let root: Vec<f64> = stations.iter().map(|s| s.mass.sqrt()).collect();
-        let f = flexibility.matrix(&nodes, &nodes, Structure::Actual);
+        let masses: Vec<f64> = stations.iter().map(|s| s.mass).collect();
+        Modes::of_matrices(&flexibility.matrix(&nodes, &nodes, Structure::Actual), &masses, count)
+    }
+
+    /// The lowest `count` modes of masses [kg] on a beam of flexibility F at them [m/N].
+    pub fn of_matrices(f: &Mat<f64>, masses: &[f64], count: usize) -> Result<Self, Error> {
+        let n = masses.len();
+        if count == 0 || count > n {
+            return Err(Error::input("modes", count, format!("must be 1 to {n}, the number of masses that can move")));
+        }
+        let root: Vec<f64> = masses.iter().map(|m| m.sqrt()).collect();
         // F is symmetric by Maxwell; rounding is taken out so that either triangle says the same.
         let a = Mat::from_fn(n, n, |i, j| root[i] * 0.5 * (f[(i, j)] + f[(j, i)]) * root[j]);
 

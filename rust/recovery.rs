@@ -8,12 +8,12 @@ use std::ops::Range;
 
 use faer::Mat;
 
-use crate::bridge::Bridge;
-use crate::crossing::{Damping, ModalBridge};
+use crate::crossing::Damping;
 use crate::error::Error;
 use crate::history::History;
 use crate::influence::Responses;
 use crate::line::{Line, Mesh};
+use crate::modal::ModalDamping;
 use crate::modes::Modes;
 
 /// How responses follow from the included modes.
@@ -145,25 +145,66 @@ pub struct Rows {
     static_shapes: Vec<Line>,
 }
 
-impl Rows {
-    /// For `responses` of `bridge` from `modes`; `model` is that bridge in these modes, `damping` as given by the user.
-    pub fn new(
-        bridge: &Bridge,
+/// Static responses to the forces on the masses, mode by mode; a row for each response, a column for each mode.
+#[derive(Debug, Clone)]
+pub struct ModalFactors {
+    /// To MΦ: times ω² they are ρ.
+    pub inertia: Mat<f64>,
+    /// To CΦ.
+    pub damping: Mat<f64>,
+}
+
+impl ModalFactors {
+    /// From the masses (node, mass [kg]) and the mode shapes at them; `damping` as given and in these modes.
+    pub fn of_masses(
         responses: &Responses,
+        masses: &[(usize, f64)],
         modes: &Modes,
+        damping: (&Damping, &ModalDamping),
+    ) -> Self {
+        // Influence of a unit load at every mass station on every response.
+        let influence = Mat::from_fn(responses.len(), masses.len(), |r, j| responses.at_station(r, masses[j].0));
+        let momentum = Mat::from_fn(masses.len(), modes.len(), |j, i| masses[j].1 * modes.shapes[(j, i)]);
+        let inertia = &influence * &momentum;
+        match damping {
+            (Damping::Viscous(c), _) => {
+                let damping = &influence * &(c * &modes.shapes);
+                ModalFactors { inertia, damping }
+            }
+            (_, in_modes) => ModalFactors::classical(inertia, &modes.omega, in_modes),
+        }
+    }
+
+    /// From ρ, the responses of the mode shapes themselves.
+    pub fn of_responses(rho: &Mat<f64>, omega: &[f64], damping: &ModalDamping) -> Self {
+        let inertia = Mat::from_fn(rho.nrows(), omega.len(), |r, i| rho[(r, i)] / omega[i].powi(2));
+        ModalFactors::classical(inertia, omega, damping)
+    }
+
+    /// With C such that CΦ = MΦ diag(2ζω).
+    fn classical(inertia: Mat<f64>, omega: &[f64], damping: &ModalDamping) -> Self {
+        let rate = |i: usize| match damping {
+            ModalDamping::Classical(ratios) => 2.0 * ratios[i] * omega[i],
+            ModalDamping::Coupled(d) => d[(i, i)],
+        };
+        let damping = Mat::from_fn(inertia.nrows(), inertia.ncols(), |r, i| rate(i) * inertia[(r, i)]);
+        ModalFactors { inertia, damping }
+    }
+}
+
+impl Rows {
+    /// For `responses`, from what they are to each mode.
+    pub fn new(
+        responses: &Responses,
+        factors: &ModalFactors,
+        omega: &[f64],
         mode_lines: &[Line],
         mesh: &Mesh,
-        damping: (&Damping, &ModalBridge),
         recovery: Recovery,
     ) -> Self {
-        let (n, m) = (responses.len(), modes.len());
-        let nodes: Vec<usize> = bridge.stations().iter().map(|s| mesh.node_at(s.at)).collect();
-        // Influence of a unit load at every mass station on every response.
-        let influence = Mat::from_fn(n, nodes.len(), |r, j| responses.at_station(r, nodes[j]));
-        let momentum = Mat::from_fn(nodes.len(), m, |j, i| bridge.stations()[j].mass * modes.shapes[(j, i)]);
-        // Static response to the inertia forces of a unit modal acceleration.
-        let inertia = &influence * &momentum;
-        let rho = |r: usize, i: usize| modes.omega[i].powi(2) * inertia[(r, i)];
+        let (n, m) = (responses.len(), omega.len());
+        let ModalFactors { inertia, damping } = factors;
+        let rho = |r: usize, i: usize| omega[i].powi(2) * inertia[(r, i)];
         let blocks = |width: usize, value: &dyn Fn(usize, usize) -> f64| -> Vec<Block> {
             let pairs = (0..n.div_ceil(WIDTH)).flat_map(|b| (0..width).map(move |i| (b, i)));
             pairs.map(|(b, i)| block(n, b, |r| value(r, i))).collect()
@@ -171,19 +212,13 @@ impl Rows {
         let (width, factors) = match recovery {
             Recovery::ForceSummation | Recovery::Superposition => (m, blocks(m, &rho)),
             Recovery::ForceSummationByRates => {
-                // [KTN73] Eq. 6: P̃ = −(MΦÄ + CΦȦ); with ratios C is such that CΦ = MΦ diag(2ζω).
-                let damping = match damping {
-                    (Damping::Viscous(c), _) => &influence * &(c * &modes.shapes),
-                    (Damping::Ratios(ratios), model) => Mat::from_fn(n, m, |r, i| {
-                        2.0 * ratios[i.min(ratios.len() - 1)] * model.omega[i] * inertia[(r, i)]
-                    }),
-                };
+                // [KTN73] Eq. 6: P̃ = −(MΦÄ + CΦȦ).
                 (2 * m, blocks(2 * m, &|r, i| if i < m { -damping[(r, i)] } else { -inertia[(r, i - m)] }))
             }
         };
         let static_shapes: Vec<Line> = match recovery {
             Recovery::ForceSummation => {
-                mode_lines.iter().zip(&modes.omega).map(|(line, w)| line.clone().scaled(w.powi(-2))).collect()
+                mode_lines.iter().zip(omega).map(|(line, w)| line.clone().scaled(w.powi(-2))).collect()
             }
             _ => Vec::new(),
         };

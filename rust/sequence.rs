@@ -3,9 +3,10 @@
 //! Slow and plain on purpose. It shares the basic bridge with the engine, and nothing after that.
 
 use faer::Mat;
+use faer::linalg::solvers::Solve;
 
 use crate::bridge::Bridge;
-use crate::flexibility::{Flexibility, Restraint, Structure};
+use crate::flexibility::{Action, Flexibility, Restraint, Structure};
 use crate::influence;
 use crate::line::Line;
 use crate::modes::Modes;
@@ -22,12 +23,27 @@ pub struct Sequence {
     masses: Vec<(usize, f64)>,
     /// C at the mass stations [N s/m].
     damping: Mat<f64>,
-    /// Nodes of the redundant supports.
-    redundants: Vec<usize>,
-    /// Columns of F*: deflections of the basic bridge for a unit load at the masses, then at the redundant supports.
+    /// Redundant restraints of the intermediate supports.
+    redundants: Vec<Restraint>,
+    /// Columns of F*: deflections of the basic bridge for a unit load at the masses, then at the redundant supports (a
+    /// unit couple where these hold the rotation).
     columns: Vec<Line>,
+    /// Nodes of the hinges, and the deflections of the basic bridge for a unit kink at each.
+    hinges: Vec<(usize, Line)>,
     /// Influence lines of the outer reactions of the basic bridge (R*, Q* and their like), left to right.
     outer: Vec<(Restraint, Line)>,
+}
+
+impl Recovered {
+    /// Adds `factor` times another state of the bridge, whose inertia forces are left out.
+    fn add_scaled(&mut self, factor: f64, other: &Recovered) {
+        let add = |mine: &mut [f64], theirs: &[f64]| mine.iter_mut().zip(theirs).for_each(|(m, t)| *m += factor * t);
+        add(&mut self.redundant_reactions, &other.redundant_reactions);
+        add(&mut self.deflections, &other.deflections);
+        add(&mut self.outer_reactions, &other.outer_reactions);
+        add(&mut self.moments, &other.moments);
+        add(self.shears.as_flattened_mut(), other.shears.as_flattened());
+    }
 }
 
 /// What the sequence gives at one instant.
@@ -35,13 +51,14 @@ pub struct Sequence {
 pub struct Recovered {
     /// P̃: inertia and damping forces at the mass stations, down [N].
     pub inertia_forces: Vec<f64>,
-    /// R: redundant reactions as loads, down [N].
+    /// R: redundant reactions as loads, down [N], and couples in the sense of positive slope [N m].
     pub redundant_reactions: Vec<f64>,
     /// y at every node of the mesh [m].
     pub deflections: Vec<f64>,
-    /// Reactions of the basic bridge on it: forces up [N], clamp moments sagging [N m].
+    /// Reactions of the basic bridge on it: forces up [N], clamp moments at the ends sagging [N m], elsewhere in the
+    /// sense of positive slope.
     pub outer_reactions: Vec<f64>,
-    /// M at every node [N m].
+    /// M at every node, just left of it where a support holds the rotation [N m].
     pub moments: Vec<f64>,
     /// V just left and just right of every node [N].
     pub shears: Vec<[f64; 2]>,
@@ -52,9 +69,16 @@ impl Sequence {
     pub fn new(bridge: &Bridge, flexibility: &Flexibility, modes: &Modes, damping: Mat<f64>) -> Self {
         let mesh = flexibility.mesh();
         let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
-        let redundants: Vec<usize> = flexibility.redundants().iter().map(|r| r.node()).collect();
-        let stations = masses.iter().map(|m| m.0).chain(redundants.iter().copied());
-        let columns = stations.map(|node| influence::deflection(flexibility, node, Structure::Basic)).collect();
+        let redundants = flexibility.redundants().to_vec();
+        let basic = Structure::Basic;
+        let columns = masses.iter().map(|m| influence::deflection(flexibility, m.0, basic));
+        let columns = columns.chain(redundants.iter().map(|r| match *r {
+            Restraint::Deflection(node) => influence::deflection(flexibility, node, basic),
+            Restraint::Slope(node) => influence::slope(flexibility, node, basic),
+        }));
+        let columns = columns.collect();
+        let kinked = |&node: &usize| (node, flexibility.deflected(Action::Kink(node), basic));
+        let hinges = flexibility.hinges().iter().map(kinked).collect();
         let outer = flexibility.outer_restraints().into_iter();
         let outer = outer.map(|r| (r, influence::reaction(flexibility, r, Structure::Basic))).collect();
         Sequence {
@@ -66,6 +90,7 @@ impl Sequence {
             damping,
             redundants,
             columns,
+            hinges,
             outer,
         }
     }
@@ -98,19 +123,44 @@ impl Sequence {
     }
 
     /// Eqs. 12–16 and force summation, for axles at x [m] with loads [N] and inertia forces P̃; without P̃, Eqs. 17–20.
+    ///
+    /// Where the bridge has hinges, the whole is done for a unit kink at each as well, and as much of these is added as
+    /// takes the moments at the hinges away.
     pub fn recover(&self, axles: &[(f64, f64)], inertia_forces: &[f64]) -> Recovered {
+        let mut recovered = self.recover_without_hinges(axles, inertia_forces, None);
+        if self.hinges.is_empty() {
+            return recovered;
+        }
+        let kinked: Vec<Recovered> =
+            self.hinges.iter().map(|(_, line)| self.recover_without_hinges(&[], &[], Some(line))).collect();
+        let n = self.hinges.len();
+        let moments = Mat::from_fn(n, n, |i, j| kinked[j].moments[self.hinges[i].0]);
+        let opposite = Mat::from_fn(n, 1, |i, _| -recovered.moments[self.hinges[i].0]);
+        let kinks = moments.partial_piv_lu().solve(&opposite);
+        for (j, unit) in kinked.iter().enumerate() {
+            recovered.add_scaled(kinks[(j, 0)], unit);
+        }
+        recovered
+    }
+
+    /// Of the bridge without its hinges, which the basic bridge may enter with a deflected shape of its own.
+    fn recover_without_hinges(&self, axles: &[(f64, f64)], inertia_forces: &[f64], shape: Option<&Line>) -> Recovered {
         let mesh = self.flexibility.mesh();
         let on_bridge: Vec<(f64, f64)> = axles.iter().copied().filter(|&(x, _)| mesh.panel_at(x).is_some()).collect();
 
         // [KTN73] Eq. 12: y* = F̄* P̄ + F* P̃*, here at the redundant supports. By Maxwell's theorem the deflection at a
         // support due to a unit load at an axle is the support's own column of F*, interpolated at the axle.
         let masses = self.masses.len();
-        let y_r: Vec<f64> = (0..self.redundants.len())
-            .map(|i| {
+        let y_r: Vec<f64> = (self.redundants.iter().enumerate())
+            .map(|(i, redundant)| {
                 let column = &self.columns[masses + i];
                 let loads: f64 = on_bridge.iter().map(|&(x, p)| column.at(mesh, x) * p).sum();
                 let forces = self.masses.iter().zip(inertia_forces);
-                loads + forces.map(|(&(node, _), p)| column.at_node(node) * p).sum::<f64>()
+                let own = shape.map_or(0.0, |shape| match *redundant {
+                    Restraint::Deflection(node) => shape.at_node(node),
+                    Restraint::Slope(node) => shape.slope_at_node(mesh, node),
+                });
+                own + loads + forces.map(|(&(node, _), p)| column.at_node(node) * p).sum::<f64>()
             })
             .collect();
 
@@ -118,7 +168,8 @@ impl Sequence {
         let redundant_reactions = self.flexibility.redundant_reactions(&y_r);
 
         // P*: the reactions take the place of the null elements of P̃*.
-        let p_star: Vec<(usize, f64)> = (self.masses.iter().map(|m| m.0).zip(inertia_forces.iter().copied()))
+        let masses = self.masses.iter().map(|m| Restraint::Deflection(m.0));
+        let p_star: Vec<(Restraint, f64)> = (masses.zip(inertia_forces.iter().copied().chain(std::iter::repeat(0.0))))
             .chain(self.redundants.iter().copied().zip(redundant_reactions.iter().copied()))
             .collect();
 
@@ -127,38 +178,50 @@ impl Sequence {
             .map(|node| {
                 let here = influence::deflection(&self.flexibility, node, Structure::Basic);
                 let loads: f64 = on_bridge.iter().map(|&(x, p)| here.at(mesh, x) * p).sum();
-                loads + self.columns.iter().zip(&p_star).map(|(column, p)| column.at_node(node) * p.1).sum::<f64>()
+                let own = shape.map_or(0.0, |shape| shape.at_node(node));
+                own + loads
+                    + self.columns.iter().zip(&p_star).map(|(column, p)| column.at_node(node) * p.1).sum::<f64>()
             })
             .collect();
 
         // [KTN73] Eq. 16: R¹ = (R*)ᵀ P* + (R̄*)ᵀ P̄, and Q¹ likewise. R enters as a load, so reactions on the bridge, up,
         // come out positive.
-        let outer_reactions: Vec<f64> = self
-            .outer
-            .iter()
-            .map(|(_, line)| {
+        let outer_reactions: Vec<f64> = (self.outer.iter())
+            .map(|(restraint, line)| {
                 let loads: f64 = on_bridge.iter().map(|&(x, p)| line.at(mesh, x) * p).sum();
-                loads + p_star.iter().map(|&(node, p)| line.at_node(node) * p).sum::<f64>()
+                let own = shape.map_or(0.0, |shape| self.reaction_in(shape, *restraint));
+                let forces = p_star.iter().map(|&(place, p)| match place {
+                    Restraint::Deflection(node) => line.at_node(node) * p,
+                    Restraint::Slope(node) => line.slope_at_node(mesh, node) * p,
+                });
+                own + loads + forces.sum::<f64>()
             })
             .collect();
 
         // Equilibrium with everything to the left of a section ([KTN73] Table 1: the outer reactions that stand there).
-        let forces: Vec<(f64, f64)> = (on_bridge.iter().map(|&(x, p)| (x, -p)))
-            .chain(p_star.iter().map(|&(node, p)| (mesh.nodes()[node], -p)))
-            .chain(self.outer.iter().zip(&outer_reactions).filter_map(|((restraint, _), &r)| match restraint {
-                Restraint::Deflection(node) => Some((mesh.nodes()[*node], r)),
-                Restraint::Slope(_) => None,
-            }))
-            .collect();
-        let clamp: f64 = (self.outer.iter().zip(&outer_reactions))
-            .filter(|((restraint, _), _)| *restraint == Restraint::Slope(0))
-            .map(|(_, &q)| q)
-            .sum();
+        let mut forces: Vec<(f64, f64)> = on_bridge.iter().map(|&(x, p)| (x, -p)).collect();
+        let mut couples: Vec<(f64, f64)> = Vec::new();
+        let end = mesh.panels();
+        for &(place, p) in &p_star {
+            match place {
+                Restraint::Deflection(node) => forces.push((mesh.nodes()[node], -p)),
+                Restraint::Slope(node) => couples.push((mesh.nodes()[node], p)),
+            }
+        }
+        for ((restraint, _), &r) in self.outer.iter().zip(&outer_reactions) {
+            match *restraint {
+                Restraint::Deflection(node) => forces.push((mesh.nodes()[node], r)),
+                Restraint::Slope(node) if node < end => couples.push((mesh.nodes()[node], r)),
+                Restraint::Slope(_) => {}
+            }
+        }
         let up_to = |x: f64, inclusive: bool| {
             forces.iter().filter(move |&&(at, _)| at < x || (inclusive && at == x)).map(|&(_, f)| f).sum::<f64>()
         };
+        // A couple at the left end is a moment there; elsewhere the moment is the one just left of it.
+        let turned = |x: f64| couples.iter().filter(|c| c.0 < x || c.0 == 0.0).map(|c| c.1).sum::<f64>();
         let moments = (mesh.nodes().iter())
-            .map(|&x| clamp + forces.iter().filter(|f| f.0 < x).map(|&(at, f)| f * (x - at)).sum::<f64>())
+            .map(|&x| turned(x) + forces.iter().filter(|f| f.0 < x).map(|&(at, f)| f * (x - at)).sum::<f64>())
             .collect();
         let shears = mesh.nodes().iter().map(|&x| [up_to(x, false), up_to(x, true)]).collect();
         Recovered {
@@ -168,6 +231,23 @@ impl Sequence {
             outer_reactions,
             moments,
             shears,
+        }
+    }
+
+    /// Reaction of an outer restraint in a deflected shape of the basic bridge: the jump of its shear or moment.
+    fn reaction_in(&self, shape: &Line, restraint: Restraint) -> f64 {
+        let f = &self.flexibility;
+        let end = f.mesh().panels();
+        let jump = |node: usize, value: &dyn Fn(usize, f64) -> f64| {
+            let after = if node < end { value(node, 0.0) } else { 0.0 };
+            after - if node > 0 { value(node - 1, 1.0) } else { 0.0 }
+        };
+        match restraint {
+            Restraint::Deflection(node) => jump(node, &|panel, _| f.shear_in(shape, panel)),
+            Restraint::Slope(node) => {
+                let rise = jump(node, &|panel, fraction| f.moment_in(shape, panel, fraction));
+                if node < end { rise } else { -rise }
+            }
         }
     }
 

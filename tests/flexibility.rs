@@ -3,7 +3,7 @@
 mod problems;
 
 use faer::Mat;
-use problems::{arrangements, elements, outer_supports, pinned, points};
+use problems::{all_arrangements, arrangements, elements, pinned, points};
 use problems::{clamped, kishan_bridge, largest_magnitude};
 use spanwise::bridge::{Bridge, Stations, Support};
 use spanwise::flexibility::{Action, Flexibility, Structure};
@@ -36,7 +36,7 @@ fn deflection(bridge: &Bridge, x: f64, at: f64) -> f64 {
 
 #[test]
 fn maxwell_reciprocity() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let flexibility = Flexibility::new(&bridge, &points(&bridge)).unwrap();
         let nodes: Vec<usize> = (0..flexibility.mesh().nodes().len()).collect();
         for structure in BOTH {
@@ -72,18 +72,14 @@ fn closed_forms() {
 /// Columns of F* and F between stations: one cubic per panel is exact wherever it is read.
 #[test]
 fn deflected_shapes_against_elements() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let flexibility = Flexibility::new(&bridge, &[]).unwrap();
         let mesh = flexibility.mesh();
         for structure in BOTH {
-            let supports = match structure {
-                Structure::Basic => outer_supports(&bridge),
-                Structure::Actual => bridge.supports().to_vec(),
-            };
             let (mut worst, mut scale) = ([0.0_f64; 2], [0.0_f64; 2]);
             for station in bridge.stations() {
                 let line = flexibility.deflected(Action::Force(mesh.node_at(station.at)), structure);
-                let solved = elements::solve(&bridge, &supports, &[(station.at, 1.0)], &points(&bridge));
+                let solved = elements::solve(&bridge, structure, &[(station.at, 1.0)], &points(&bridge));
                 for x in points(&bridge) {
                     let panel = mesh.panel_at(x).unwrap();
                     let ours = [line.at(mesh, x), line.slope(mesh, panel, mesh.fraction(panel, x))];

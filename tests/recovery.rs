@@ -4,7 +4,7 @@ mod problems;
 
 use faer::Mat;
 use problems::*;
-use spanwise::bridge::{Bridge, Fixity, Stations};
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::crossing::{Damping, Settings};
 use spanwise::flexibility::Restraint;
 use spanwise::influence::Quantity;
@@ -41,7 +41,7 @@ fn crossed(bridge: &Bridge, modes: usize, damping: &Damping, recovery: Recovery)
 /// Φ of all modes, and Φᵀ M.
 fn all_modes(run: &Run) -> (Modes, Mat<f64>) {
     let stations = run.bridge.stations();
-    let modes = Modes::new(&run.bridge, &run.analysis.flexibility, stations.len()).unwrap();
+    let modes = Modes::new(&run.bridge, &run.flexibility, stations.len()).unwrap();
     let momentum = Mat::from_fn(stations.len(), stations.len(), |i, j| modes.shapes[(j, i)] * stations[j].mass);
     (modes, momentum)
 }
@@ -54,7 +54,7 @@ fn classical(run: &Run, value: impl Fn(f64) -> f64) -> Mat<f64> {
 }
 
 fn sequence(run: &Run, c: &Mat<f64>) -> Sequence {
-    Sequence::new(&run.bridge, &run.analysis.flexibility, &run.analysis.modes, c.clone())
+    Sequence::new(&run.bridge, &run.flexibility, &run.analysis.modes, c.clone())
 }
 
 fn axles(row: &Row<'_>) -> Vec<(f64, f64)> {
@@ -63,17 +63,22 @@ fn axles(row: &Row<'_>) -> Vec<(f64, f64)> {
 
 /// The recovered values in the order of the rows.
 fn in_order(run: &Run, recovered: &Recovered) -> Vec<f64> {
-    let flexibility = &run.analysis.flexibility;
+    let flexibility = &run.flexibility;
     let nodes = run.analysis.responses.sections();
     let mut values: Vec<f64> = nodes.iter().map(|&n| recovered.deflections[n]).collect();
     values.extend(nodes.iter().map(|&n| recovered.moments[n]));
     values.extend(nodes.iter().map(|&n| recovered.shears[n][0]));
     values.extend(nodes.iter().map(|&n| recovered.shears[n][1]));
     let outer = flexibility.outer_restraints().into_iter().zip(recovered.outer_reactions.iter().copied());
-    let (forces, moments): (Vec<_>, Vec<_>) = outer.partition(|(r, _)| matches!(r, Restraint::Deflection(_)));
-    let redundant = flexibility.redundants().iter().zip(&recovered.redundant_reactions).map(|(r, p)| (*r, -p));
-    let mut forces: Vec<(Restraint, f64)> = forces.into_iter().chain(redundant).collect();
+    // Redundant reactions are loads, down; as couples they are already what the support does to the bridge.
+    let redundant = flexibility.redundants().iter().zip(&recovered.redundant_reactions).map(|(r, p)| match r {
+        Restraint::Deflection(_) => (*r, -p),
+        Restraint::Slope(_) => (*r, *p),
+    });
+    let all = outer.chain(redundant);
+    let (mut forces, mut moments): (Vec<_>, Vec<_>) = all.partition(|(r, _)| matches!(r, Restraint::Deflection(_)));
     forces.sort_by_key(|(r, _)| r.node());
+    moments.sort_by_key(|(r, _)| r.node());
     values.extend(forces.into_iter().chain(moments).map(|(_, value)| value));
     values
 }
@@ -116,7 +121,7 @@ fn rows_against_sequence(run: &Run, c: &Mat<f64>, by_rates: bool) -> f64 {
 
 #[test]
 fn rows_are_the_sequence() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let c = uneven_damping(&bridge);
         for damping in [Damping::Ratios(vec![0.03]), Damping::Viscous(c.clone())] {
             let run = crossed(&bridge, MODES, &damping, ForceSummation);
@@ -129,7 +134,7 @@ fn rows_are_the_sequence() {
 
 #[test]
 fn rows_by_rates_are_the_sequence_with_eq_6() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let c = uneven_damping(&bridge);
         let full = crossed(&bridge, MODES, &Damping::Viscous(c.clone()), ForceSummationByRates);
         let ratios = crossed(&bridge, MODES, &Damping::Ratios(vec![0.03]), ForceSummationByRates);
@@ -145,7 +150,7 @@ fn rows_by_rates_are_the_sequence_with_eq_6() {
 /// Forces and moments balance at every instant: reactions and clamp moments with axle loads and inertia forces.
 #[test]
 fn the_bridge_is_in_equilibrium() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let run = crossed(&bridge, MODES, &Damping::Viscous(uneven_damping(&bridge)), ForceSummation);
         let sequence = sequence(&run, &uneven_damping(&bridge));
         let [reactions, clamps, moments] =
@@ -158,14 +163,14 @@ fn the_bridge_is_in_equilibrium() {
             let axles = axles(&row);
             let forces = sequence.inertia_forces(row.a, &axles);
             let stations = bridge.stations().iter().map(|s| s.at).zip(forces.iter().copied());
-            let on_bridge = |&(x, _): &(f64, f64)| run.analysis.flexibility.mesh().panel_at(x).is_some();
+            let on_bridge = |&(x, _): &(f64, f64)| run.flexibility.mesh().panel_at(x).is_some();
             let loads: Vec<(f64, f64)> = axles.iter().copied().filter(on_bridge).chain(stations).collect();
             let up = bridge.supports().iter().map(|s| s.at).zip(row.dynamic[reactions.clone()].iter().copied());
             let down = loads.into_iter().chain(up.map(|(x, r)| (x, -r)));
-            let clamped = bridge.supports().iter().filter(|s| s.fixity == Fixity::Clamped);
-            // Clockwise: sagging on the left end, hogging on the right one.
+            let clamped = bridge.supports().iter().filter(|s| s.fixity.rotation() > 0.0);
+            // Clockwise, but on the right end sagging, which is anticlockwise.
             let couples: f64 =
-                clamped.zip(&row.dynamic[clamps.clone()]).map(|(s, m)| if s.at == 0.0 { *m } else { -m }).sum();
+                clamped.zip(&row.dynamic[clamps.clone()]).map(|(s, m)| if s.at == length { -m } else { *m }).sum();
             let (force, about_left) = down.fold((0.0, couples), |(f, m), (x, p)| (f + p, m + p * x));
             let about_right = about_left - force * length;
             worst = worst.max(force.abs() / largest);
@@ -176,7 +181,7 @@ fn the_bridge_is_in_equilibrium() {
         }
         println!("{name}: out of balance {worst:.1e}, end moment {:.1e}", at_the_end / largest_moment);
         assert!(worst <= ROUNDING, "{name}: out of balance by {worst:.2e}");
-        let clamped_there = bridge.supports().iter().any(|s| s.at == length && s.fixity == Fixity::Clamped);
+        let clamped_there = bridge.supports().iter().any(|s| s.at == length && s.fixity.rotation() > 0.0);
         assert_eq!(at_the_end <= ROUNDING * largest_moment, !clamped_there, "{name}: moment at the right end");
     }
 }
@@ -208,7 +213,7 @@ fn eq_6_and_eq_11(run: &Run, c: &Mat<f64>) -> [f64; 3] {
 
 #[test]
 fn eq_6_is_eq_11_with_classical_damping() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let ratios = crossed(&bridge, MODES, &Damping::Ratios(vec![0.02, 0.03, 0.01, 0.05]), ForceSummation);
         let omega = ratios.analysis.modes.omega.clone();
         // Ratios of the included modes; of the others C does not matter.
@@ -231,7 +236,7 @@ fn eq_6_is_eq_11_with_classical_damping() {
 
 #[test]
 fn eq_6_differs_from_eq_11_by_the_damping_forces_that_the_modes_miss() {
-    for (name, bridge) in arrangements() {
+    for (name, bridge) in all_arrangements() {
         let c = uneven_damping(&bridge);
         let run = crossed(&bridge, MODES, &Damping::Viscous(c.clone()), ForceSummation);
         let [forces, difference, unexplained] = eq_6_and_eq_11(&run, &c);

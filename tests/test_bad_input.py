@@ -127,7 +127,72 @@ BRIDGES: list[tuple[Callable[..., sw.Bridge], dict[str, Any], tuple[str, ...]]] 
     (on_supports, {"supports": [(-1.0, "pinned"), (20.0, "pinned")]}, ("[0]", "-1 m", ON_BEAM)),
     (on_supports, {"supports": [(nan, "pinned"), (20.0, "pinned")]}, ("[0]", "NaN", ON_BEAM)),
     (on_supports, {"supports": [(5.0, "pinned"), (5.0, "pinned")]}, ("5 m and 5 m", "same")),
-    (on_supports, {"supports": [(0.0, "pinned"), (9.0, "clamped")]}, ("[1]", "9 m", "end of the")),
+    *(
+        (
+            on_supports,
+            {"supports": [(0.0, "pinned"), {"at": 9.0, key: bad}]},
+            ("[1]", key, shown, "or"),
+        )
+        for key, bad, shown in (
+            *(("vertical", bad, str(bad)) for bad in (0, -1e6, -inf)),
+            *(("rotation", bad, str(bad)) for bad in (-1e6, -inf)),
+            *((key, nan, "NaN") for key in ("vertical", "rotation")),
+        )
+    ),
+    (on_supports, {"supports": [{"at": 9.0, "vertcal": 1e6}]}, ("supports[0]", "'vertical'")),
+    (on_supports, {"supports": [{"vertical": 1e6}]}, ("supports[0]", "missing at")),
+    (
+        on_supports,
+        {"supports": [sw.Support(at=9.0, vertical=1e6)]},
+        ("unstable", "spring of", "rotate"),
+    ),
+    *(
+        (on_supports, {"hinges": [bad]}, ("hinges[0]", str(bad), "inside the beam"))
+        for bad in (0, 20, 25, -3, inf)
+    ),
+    (on_supports, {"hinges": [nan]}, ("hinges[0]", "NaN", "inside the beam")),
+    (on_supports, {"hinges": [10.0]}, ("hinges[0]", "10 m", "mechanism")),
+    (two_spans, {"hinges": [24.0, 30.0]}, ("hinges[1]", "30 m", "mechanism")),
+    (two_spans, {"hinges": [9.0, 9.0]}, ("hinges", "9 m and 9 m", "same position")),
+    (
+        two_spans,
+        {"ends": ("free", "clamped"), "hinges": [5.0]},
+        ("hinges[0]", "5 m", "mechanism"),
+    ),
+    (
+        on_supports,
+        {"supports": [(0.0, "pinned"), (9.0, "clamped")], "hinges": [9.0]},
+        ("hinges[0]", "9 m", "holds the rotation"),
+    ),
+    *(
+        (on_supports, {key: {"at": at, "values": values}}, (f"{key} {what}", *said))
+        for key in ("EI", "mass")
+        for at, values, what, said in (
+            ([0.0, 12.0, 8.0, 20.0], [1e9] * 3, "at[2]", ("8 m", "greater than", "12 m")),
+            ([0.0, 8.0, 8.0, 20.0], [1e9] * 3, "at[2]", ("8 m", "greater than")),
+            ([0.0, 8.0, 19.0], [1e9] * 2, "at[2]", ("19 m", "cover the beam")),
+            ([1.0, 8.0, 20.0], [1e9] * 2, "at[0]", ("1 m", "cover the beam")),
+            ([0.0, nan, 20.0], [1e9] * 2, "at[1]", ("NaN", "finite")),
+            ([0.0], [1e9], "at", ("1 breakpoints", "2 to")),
+            ([0.0, 8.0, 20.0], [1e9], "values", ("1 values", "2 values, constant", "or 3, linear")),
+            ([0.0, 20.0], [1e9, -1.0], "values[1]", ("-1", "0")),
+            ([0.0, 20.0], [1e9, nan], "values[1]", ("NaN", "finite")),
+        )
+    ),
+    (
+        on_supports,
+        {"EI": {"at": [0.0, 20.0], "values": [1e9, 0.0]}},
+        ("EI values[1]", "0", POSITIVE),
+    ),
+    *(
+        (
+            on_supports,
+            {"EI": sw.Along([0.0, 20.0], [1e9, 2e9], bad)},
+            ("EI pieces", str(bad), "must"),
+        )
+        for bad in (0, -1, 5000, 1.5)
+    ),
+    (on_supports, {"EI": {"at": [0.0, 20.0], "value": [1e9]}}, ("EI", "'value'", "'values'")),
     (on_supports, {"supports": [(0.0, "fixed")]}, ("supports[0]", "fixed", "pinned or clamped")),
     (on_supports, {"supports": [0.0, 20.0]}, ("supports[0]", "0.0", "pair")),
     (on_supports, {"stations": []}, ("stations", "0 m to 20 m", "at least one station")),

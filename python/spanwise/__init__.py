@@ -2,9 +2,11 @@
 
 from spanwise import roads, vehicles
 from spanwise._core import __version__
-from spanwise.bridge import Bridge, Modes
+from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case
 from spanwise.crossing import cross
+from spanwise.damping import Rayleigh
+from spanwise.layout import Along, Support
 from spanwise.roads import (
     ISO8608,
     Bump,
@@ -24,6 +26,7 @@ from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 __all__ = [
     "Acceleration",
+    "Along",
     "Axle",
     "Body",
     "Braking",
@@ -45,11 +48,14 @@ __all__ = [
     "Pothole",
     "Profile",
     "Ramp",
+    "Rayleigh",
     "Run",
+    "Settlement",
     "Smooth",
     "Speeds",
     "Spring",
     "Step",
+    "Support",
     "Vehicle",
     "__version__",
     "convoy",

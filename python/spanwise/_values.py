@@ -18,9 +18,12 @@ EXTREMES: Final = ("max", "min", "static_max", "static_min")
 
 
 def quantities(run: Run) -> list[Quantity]:
-    """Those that the run has: without a clamp there are no clamp moments."""
-    clamped = any(kind == "clamped" for _, kind in run.bridge.supports)
-    return [each for each in QUANTITIES if clamped or each != "clamp_moments"]
+    """Those that the run has: without a clamp no clamp moments, and all that the bridge knows."""
+    named = {"shear": "shear-left", "reactions": "reaction", "clamp_moments": "clamp-moment"}
+    missing = run.bridge.missing
+    clamped = len(run.bridge.clamps) > 0
+    known = [each for each in QUANTITIES if named.get(each, each) not in missing]
+    return [each for each in known if clamped or each != "clamp_moments"]
 
 
 def places(run: Run, quantity: Quantity) -> Array:

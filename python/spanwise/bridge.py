@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise import _core
-from spanwise._checks import Numbers, array, count, counts, number, numbers, pairs, word
+from spanwise import _core, _given
+from spanwise._checks import array, count, counts, number, numbers, pairs, shown, word
+from spanwise.layout import (
+    AlongBeam,
+    AnySupport,
+    Support,
+    along,
+    along_argument,
+    support_argument,
+)
+from spanwise.layout import (
+    supports as supports_of,
+)
 
 if TYPE_CHECKING:
     from spanwise.plotting import BridgePlot
@@ -18,8 +29,9 @@ if TYPE_CHECKING:
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = Literal["pinned", "clamped", "free"]
 Quantity: TypeAlias = Literal[
-    "deflection", "slope", "moment", "shear-left", "shear-right", "reaction"
+    "deflection", "slope", "moment", "shear-left", "shear-right", "reaction", "clamp-moment"
 ]
+Side: TypeAlias = Literal["left", "right"]
 Structure: TypeAlias = Literal["actual", "basic"]
 
 
@@ -50,11 +62,44 @@ class Modes:
         return 2.0 * np.pi * self.frequencies
 
 
+@dataclass(frozen=True, eq=False)
+class Settlement:
+    """What settling supports do to a bridge at rest.
+
+    Attributes
+    ----------
+    sections : ndarray, shape (section,)
+        Where it was looked at [m].
+    supports : ndarray, shape (support,)
+        Positions of the supports [m].
+    deflection : ndarray, shape (section,)
+        Deflections, down [m].
+    moment : ndarray, shape (section,)
+        Bending moments, sagging [N m].
+    shear : ndarray, shape (section, 2)
+        Shears just left and just right of the sections [N].
+    reactions : ndarray, shape (support,)
+        Reactions, up [N]; they balance each other.
+    clamp_moments : ndarray, shape (clamp,)
+        Moments of the supports that hold the rotation [N m]; see `Bridge.clamps`.
+    """
+
+    sections: Array
+    supports: Array
+    deflection: Array
+    moment: Array
+    shear: Array
+    reactions: Array
+    clamp_moments: Array
+
+
 class Bridge:
     """A straight beam bridge whose mass is lumped at stations.
 
     Give either `spans` (with `ends`), or `length` and `supports`. A *span* is a stretch between
-    neighbouring supports or ends, so an overhang is a span of its own.
+    neighbouring supports or ends, so an overhang is a span of its own. A bridge that another
+    program has modelled comes from `from_modes`, one of known flexibility from
+    `from_flexibility`.
 
     Parameters
     ----------
@@ -64,12 +109,16 @@ class Bridge:
         How the left and the right end are held. Used with `spans`.
     length : float
         Length of the beam [m]. Used with `supports`.
-    supports : sequence of (float, {"pinned", "clamped"})
-        Position [m] and kind of every support; only an end can be clamped.
-    EI : float or sequence of float
-        Flexural rigidity [N m2], one value or one per span.
-    mass : float or sequence of float
-        Mass per unit length [kg/m], one value or one per span.
+    supports : sequence of (float, {"pinned", "clamped"}) or Support
+        Position [m] and kind of every support, or `Support` with springs, which may also be given
+        as a table with the keys ``at``, ``vertical`` and ``rotation``.
+    hinges : sequence of float, optional
+        Positions at which the beam carries no moment [m], inside the beam.
+    EI : float, sequence of float or Along
+        Flexural rigidity [N m2]: one value, one per span, or values between or at breakpoints,
+        which may also be given as a table with the keys ``at``, ``values`` and ``pieces``.
+    mass : float, sequence of float or Along
+        Mass per unit length [kg/m], likewise.
     stations_per_span : int or sequence of int, optional
         Equal shares into which each span is divided; the mass of each is lumped in its middle.
         By default 10.
@@ -82,12 +131,15 @@ class Bridge:
     Raises
     ------
     ValueError
-        If a value is not allowed, naming it and what is, or if the supports leave the beam free to
-        move.
+        If a value is not allowed, naming it and what is, if the supports leave the beam free to
+        move, or if a hinge makes a mechanism of it.
 
     Notes
     -----
-    Masses over supports do not move and are left out of `stations` and `masses`.
+    Masses over rigid supports do not move and are left out of `stations` and `masses`.
+
+    At a support inside the beam that holds the rotation the bending moment jumps: the moment of a
+    section there is the one just left of it, and the moment of the support is the rise across it.
     """
 
     def __init__(
@@ -96,9 +148,10 @@ class Bridge:
         spans: Sequence[float] | None = None,
         ends: tuple[End, End] | Sequence[End] | None = None,
         length: float | None = None,
-        supports: Iterable[tuple[float, str]] | None = None,
-        EI: Numbers,
-        mass: Numbers,
+        supports: Iterable[AnySupport] | None = None,
+        hinges: Sequence[float] = (),
+        EI: AlongBeam,
+        mass: AlongBeam,
         stations_per_span: int | Sequence[int] | None = None,
         stations: Sequence[float] | None = None,
         point_masses: Iterable[tuple[float, float]] = (),
@@ -112,8 +165,7 @@ class Bridge:
             )
         if stations is not None and stations_per_span is not None:
             raise ValueError("stations: not used with stations_per_span; give one of the two")
-        flexural_rigidity = numbers("EI", EI)
-        masses = numbers("mass", mass)
+        rigidity, masses = along("EI", EI), along("mass", mass)
         per_span = (
             [10] if stations_per_span is None else counts("stations_per_span", stations_per_span)
         )
@@ -123,52 +175,227 @@ class Bridge:
             for i, (x, m) in enumerate(pairs("point_masses", point_masses))
         ]
         if spans is not None:
-            left, right = _two_ends(("pinned", "pinned") if ends is None else ends)
-            self._core = _core.Bridge.continuous(
-                spans=numbers("spans", spans),
-                ends=(left, right),
-                flexural_rigidity=flexural_rigidity,
-                mass=masses,
-                stations_per_span=per_span,
-                stations=at,
-                point_masses=points,
-            )
+            held = _two_ends(("pinned", "pinned") if ends is None else ends)
+            total, placed = _core.Bridge.consecutive(numbers("spans", spans), held)
         else:
             if ends is not None:
                 raise ValueError("ends: used with spans only; supports says how the ends are held")
-            self._core = _core.Bridge(
-                length=number("length", length),
-                supports=[
-                    (number(f"supports[{i}] position", x), word(f"supports[{i}]", kind))
-                    for i, (x, kind) in enumerate(pairs("supports", supports))
-                ],
-                flexural_rigidity=flexural_rigidity,
-                mass=masses,
-                stations_per_span=per_span,
-                stations=at,
-                point_masses=points,
-            )
+            total, placed = number("length", length), supports_of("supports", supports)
+        self._core = _core.Bridge(
+            length=total,
+            supports=placed,
+            hinges=numbers("hinges", hinges),
+            flexural_rigidity=rigidity,
+            mass=masses,
+            stations_per_span=per_span,
+            stations=at,
+            point_masses=points,
+        )
         self._arguments: dict[str, Any] = {
             "length": self.length,
-            "supports": self.supports,
-            "EI": self.EI.tolist(),
-            "mass": masses,
+            "supports": [support_argument(each) for each in self.springs],
+            "hinges": self.hinges.tolist() or None,
+            "EI": along_argument(rigidity if rigidity[0] else (None, self.EI.tolist(), 1)),
+            "mass": along_argument(masses),
             "stations_per_span": per_span if at is None else None,
             "stations": at,
             "point_masses": points,
         }
+
+    @classmethod
+    def from_flexibility(
+        cls,
+        *,
+        length: float,
+        supports: Iterable[AnySupport],
+        stations: Sequence[float],
+        masses: Sequence[float],
+        flexibility: ArrayLike,
+        slopes: ArrayLike | None = None,
+        path: Sequence[float] | None = None,
+        redundants: Iterable[float | Support | Mapping[str, Any]] = (),
+    ) -> Bridge:
+        """A bridge of known flexibility, as Kishan and Traill-Nash describe it [1]_.
+
+        Parameters
+        ----------
+        length : float
+            Length of the beam [m].
+        supports : sequence of (float, {"pinned", "clamped"}) or Support
+            Supports of the basic bridge, which they must hold in a statically determinate way: two
+            that let it turn, or one that does not.
+        stations : sequence of float
+            Reference stations [m], ascending: where there are masses, redundant supports, and
+            sections to be looked at.
+        masses : sequence of float
+            Masses at the stations [kg], zero where there is none.
+        flexibility : array_like, shape (path, stations)
+            F*: deflections of the basic bridge at the points of the path for unit loads at the
+            stations [m/N]. Symmetric at the stations, to 1e-4 of its largest element.
+        slopes : array_like, shape (path, stations), optional
+            Slopes of these deflections along the beam [1/N], which make the lines between the
+            points exact. Without them natural cubic splines pass through the points and the
+            supports, level at an end that is clamped: exact for constant EI, if all supports are
+            pins or clamps at the ends or points of the path.
+        path : sequence of float, optional
+            Where deflections are known [m], ascending, the stations among them. By default the
+            stations. It must contain supports on springs and changes of EI, and with slopes the
+            supports inside the beam.
+        redundants : sequence of float or Support, optional
+            Stations at which redundant supports stand [m], or supports on vertical springs.
+
+        Returns
+        -------
+        Bridge
+            It can be crossed, and looked at in its stations and rigid supports.
+
+        Raises
+        ------
+        ValueError
+            If a value is not allowed, naming it and what is.
+
+        References
+        ----------
+        .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973), section 2.3.
+        """
+        at = numbers("stations", stations)
+        given: dict[str, Any] = {
+            "length": number("length", length),
+            "supports": supports_of("supports", supports),
+            "stations": at,
+            "masses": numbers("masses", masses),
+            "redundants": [_redundant(i, each) for i, each in enumerate(redundants)],
+            "path": at if path is None else numbers("path", path),
+            "flexibility": _given.matrix("flexibility", flexibility),
+            "slopes": None if slopes is None else _given.matrix("slopes", slopes),
+        }
+        arguments: dict[str, Any] = {
+            **given,
+            "supports": [
+                support_argument(Support(at=x, vertical=k, rotation=c))
+                for x, k, c in given["supports"]
+            ],
+            "redundants": [
+                support_argument(Support(at=x, vertical=k)) if np.isfinite(k) else x
+                for x, k in given["redundants"]
+            ],
+            "flexibility": _given.plain(given["flexibility"]),
+            "slopes": _given.plain(given["slopes"]),
+        }
+        return cls._of(_core.Bridge.from_flexibility(**given), {"from_flexibility": arguments})
+
+    @classmethod
+    def from_modes(
+        cls,
+        *,
+        path: Sequence[float],
+        frequencies: Sequence[float],
+        shapes: ArrayLike,
+        slopes: ArrayLike | None = None,
+        sections: Sequence[float],
+        supports: Iterable[AnySupport] = (),
+        influence: Mapping[str, ArrayLike],
+        influence_slopes: Mapping[str, ArrayLike] | None = None,
+        modal: Mapping[str, ArrayLike] | None = None,
+        masses: Sequence[float] | None = None,
+    ) -> Bridge:
+        """A bridge modelled in another program, by what it says along the path of the wheels.
+
+        Where something jumps along the path, an array may have one more axis at its end with the
+        numbers just left and just right. Without it the numbers are those on the right, at the end
+        of the path on the left; the jump of a shear and the kink of a moment at their own sections
+        are known and need not be given.
+
+        Parameters
+        ----------
+        path : sequence of float
+            Points of the path [m], from 0 to the length.
+        frequencies : sequence of float
+            Natural frequencies [Hz], ascending.
+        shapes : array_like, shape (path, modes)
+            Deflections of the mode shapes, down, scaled to unit modal mass [kg^-1/2].
+        slopes : array_like, shape (path, modes), optional
+            Their derivatives along the path. Without them natural cubic splines pass through the
+            points.
+        sections : sequence of float
+            Where deflections, moments and shears are looked at [m], points of the path.
+        supports : sequence of (float, {"pinned", "clamped"}) or Support, optional
+            Supports whose reactions are looked at.
+        influence : mapping of str to array_like, shape (sections or supports, path)
+            Responses to a unit load down at the points of the path: ``"deflection"``,
+            ``"moment"``, ``"shear-left"`` with ``"shear-right"``, ``"reaction"``,
+            ``"clamp-moment"``, signed as in `influence_line`. Lines of deflection are the
+            flexibility between section and path.
+        influence_slopes : mapping of str to array_like, optional
+            Their derivatives along the path. Without them natural cubic splines pass through the
+            points, less the jump or kink.
+        modal : mapping of str to array_like, shape (sections or supports, modes), optional
+            Response of the bridge deflected into each mode shape: its modal moment and so on.
+            Not needed of deflections, nor with masses.
+        masses : sequence of float, optional
+            Masses at the points of the path [kg]; the shapes must be orthonormal with these to
+            1e-3. They give the modal responses that `modal` leaves out.
+
+        Returns
+        -------
+        Bridge
+            It can be crossed, and looked at in these sections.
+
+        Raises
+        ------
+        ValueError
+            If a value is not allowed, naming it and what is.
+        """
+        given: dict[str, Any] = {
+            "path": numbers("path", path),
+            "frequencies": numbers("frequencies", frequencies),
+            "sections": numbers("sections", sections),
+            "supports": supports_of("supports", supports),
+            "masses": None if masses is None else numbers("masses", masses),
+        }
+        core = _core.Bridge.from_modes(
+            **given,
+            shapes=_given.sides("shapes", shapes),
+            slopes=None if slopes is None else _given.sides("slopes", slopes),
+            influence=_given.influence_lines(influence, influence_slopes, modal),
+        )
+        arrays = {
+            "shapes": shapes,
+            "slopes": slopes,
+            "influence": influence,
+            "influence_slopes": influence_slopes,
+            "modal": modal,
+        }
+        held = [
+            support_argument(Support(at=x, vertical=k, rotation=c)) for x, k, c in given["supports"]
+        ]
+        plain = {key: _given.plain(value) for key, value in arrays.items()}
+        return cls._of(core, {"from_modes": {**given, "supports": held, **plain}})
+
+    @classmethod
+    def _of(cls, core: _core.Bridge, arguments: dict[str, Any]) -> Bridge:
+        bridge = cls.__new__(cls)
+        bridge._core = core
+        bridge._arguments = arguments
+        return bridge
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its arguments, so that it can go to another process."""
         return _rebuilt, (self.arguments,)
 
     def __repr__(self) -> str:
-        held = ", ".join(f"{kind} at {x:g} m" for x, kind in self.supports)
-        return f"Bridge({self.length:g} m, {held}; {len(self.stations)} masses)"
+        held = "".join(f", {kind} at {x:g} m" for x, kind in self.supports)
+        hinged = "".join(f", hinge at {x:g} m" for x in self.hinges)
+        if self.described or len(self.stations):
+            return f"Bridge({self.length:g} m{held}{hinged}; {len(self.stations)} masses)"
+        return f"Bridge({self.length:g} m{held}; {self.mode_count} modes given)"
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """Keyword arguments that make the same bridge, as plain numbers and lists."""
+        """Keyword arguments that make the same bridge, as plain numbers and lists.
+
+        Those of `from_flexibility` or `from_modes` stand under this name.
+        """
         return {key: value for key, value in self._arguments.items() if value is not None}
 
     @property
@@ -177,9 +404,34 @@ class Bridge:
         return self._core.length
 
     @property
+    def described(self) -> bool:
+        """Whether it was described by its spans, not given by its flexibility or its modes."""
+        return self._core.described
+
+    @property
     def supports(self) -> list[tuple[float, str]]:
-        """Position [m] and kind of every support, left to right."""
-        return self._core.supports
+        """Position [m] and kind of every support: "pinned", "clamped", or "elastic" on springs."""
+        return [(each.at, each.kind) for each in self.springs]
+
+    @property
+    def springs(self) -> list[Support]:
+        """The supports with their springs, left to right."""
+        return [Support(at=x, vertical=k, rotation=c) for x, k, c in self._core.supports]
+
+    @property
+    def clamps(self) -> Array:
+        """Positions of the supports that hold the rotation [m], rigidly or by a spring.
+
+        In the order of the clamp moments: at an end of the beam the sagging moment there,
+        elsewhere the couple of the support on the beam, clockwise, by which the moment is greater
+        just right of it than just left.
+        """
+        return np.array([each.at for each in self.springs if each.rotation > 0.0])
+
+    @property
+    def hinges(self) -> Array:
+        """Positions of the hinges [m], shape (hinges,)."""
+        return self._core.hinges
 
     @property
     def span_bounds(self) -> Array:
@@ -188,21 +440,49 @@ class Bridge:
 
     @property
     def EI(self) -> Array:
-        """Flexural rigidity of each span [N m2], shape (spans,)."""
+        """Flexural rigidity of each piece of the beam [N m2], by default each span."""
         return self._core.flexural_rigidity
 
     @property
+    def EI_bounds(self) -> Array:
+        """Ends of the pieces of constant `EI`, left to right [m], shape (pieces + 1,)."""
+        return self._core.rigidity_bounds
+
+    @property
+    def nodes(self) -> Array:
+        """Ends, supports, hinges, masses and changes of EI [m]: lines are one cubic in between."""
+        return self._core.nodes
+
+    @property
     def stations(self) -> Array:
-        """Positions of the moving masses [m], shape (stations,)."""
-        return self._core.stations
+        """Positions of the moving masses [m], shape (stations,); empty if unknown."""
+        return self._core.masses[0]
 
     @property
     def masses(self) -> Array:
-        """The moving masses [kg], shape (stations,)."""
-        return self._core.masses
+        """The moving masses [kg], shape (stations,); empty if unknown."""
+        return self._core.masses[1]
+
+    @property
+    def mode_count(self) -> int:
+        """Number of modes that there are."""
+        return self._core.mode_count
+
+    @property
+    def missing(self) -> list[str]:
+        """Kinds of response that the bridge was given without."""
+        return self._core.missing
+
+    def default_modes(self) -> int:
+        """Modes included by default: two for each span, at least three, at most all."""
+        return min(self.mode_count, max(3, 2 * (len(self.span_bounds) - 1)))
 
     def default_sections(self) -> Array:
-        """Sections looked at by default [m]: mass stations, supports, tenths of every span."""
+        """Sections looked at by default [m].
+
+        Mass stations, supports, hinges, breakpoints of EI and tenths of every span; of a given
+        bridge all that it was given with.
+        """
         return self._core.default_sections()
 
     def modes(self, count: int) -> Modes:
@@ -215,21 +495,121 @@ class Bridge:
         RuntimeError
             If the eigensolution fails its own check of residual and orthogonality.
         """
-        omega, shapes, _ = self._core.modes(_modes(count), None)
+        omega, shapes, _ = self._core.modes(_modes(count), None, False, False)
         return Modes(omega / (2.0 * np.pi), self.stations, shapes)
 
-    def mode_shapes(self, count: int, x: ArrayLike) -> Array:
-        """The lowest `count` mode shapes at x [m], shape (x, modes), exact between stations."""
-        *_, along = self._core.modes(_modes(count), array("x", x).ravel())
-        assert along is not None
-        return along
+    def mode_shapes(
+        self, count: int, x: ArrayLike, *, derivative: bool = False, side: Side = "right"
+    ) -> Array:
+        """The lowest `count` mode shapes at x [m], exact between stations.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        x : array_like
+            Where [m].
+        derivative : bool, optional
+            Give the derivatives along the bridge instead.
+        side : {"right", "left"}, optional
+            On which side of x, where it matters: a shape has a kink at a hinge.
+
+        Returns
+        -------
+        ndarray, shape (x, modes)
+        """
+        where = array("x", x).ravel()
+        *_, along_x = self._core.modes(_modes(count), where, bool(derivative), _left(side))
+        assert along_x is not None
+        return along_x
+
+    def deflections(
+        self,
+        x: ArrayLike,
+        loads: Sequence[float],
+        structure: Structure = "actual",
+        *,
+        derivative: bool = False,
+        side: Side = "right",
+    ) -> Array:
+        """Deflections, down, or their derivatives, at x for unit loads down [m/N or 1/N].
+
+        Parameters
+        ----------
+        x : array_like
+            Where deflections are looked at [m].
+        loads : sequence of float
+            Where the loads stand [m].
+        structure : {"actual", "basic"}, optional
+            The bridge with or without its hinges and intermediate supports.
+        derivative : bool, optional
+            Give the derivatives along the bridge instead.
+        side : {"right", "left"}, optional
+            On which side of x, where it matters.
+
+        Returns
+        -------
+        ndarray, shape (x, loads)
+        """
+        return self._core.deflections(
+            array("x", x).ravel(),
+            numbers("loads", loads),
+            word("structure", structure, *get_args(Structure)),
+            bool(derivative),
+            _left(side),
+        )
+
+    def settlement(
+        self,
+        settlements: Mapping[float, float] | Sequence[float],
+        sections: Sequence[float] | None = None,
+    ) -> Settlement:
+        """Static effect of supports that settle.
+
+        Parameters
+        ----------
+        settlements : mapping of float to float, or sequence of float
+            Settlement, down [m], by the position of the support [m]; or one for each support. Of a
+            support on a spring it is the ground that settles.
+        sections : sequence of float, optional
+            Where to look [m]; by default as `default_sections`.
+
+        Returns
+        -------
+        Settlement
+
+        Raises
+        ------
+        ValueError
+            If no support stands at one of the positions.
+        """
+        at = np.array([x for x, _ in self.supports])
+        if isinstance(settlements, Mapping):
+            each = [0.0] * len(at)
+            for key, value in settlements.items():
+                x = number("settlements position", key)
+                near = np.flatnonzero(np.abs(at - x) <= 1e-9 * self.length)
+                if len(near) == 0:
+                    there = ", ".join(f"{a:g}" for a in at)
+                    raise ValueError(
+                        f"settlements position = {x:g} m: must be a support, {there} m"
+                    )
+                each[near[0]] = number(f"settlements[{x:g}]", value)
+        else:
+            each = numbers("settlements", settlements)
+        where = (
+            self.default_sections().tolist() if sections is None else numbers("sections", sections)
+        )
+        w, moment, left, right, reactions, clamps = self._core.settlement(each, where)
+        shear = np.stack([left, right], axis=-1)
+        return Settlement(np.array(where), at, w, moment, shear, reactions, clamps)
 
     def flexibility(self, structure: Structure = "actual") -> tuple[Array, Array]:
         """Positions [m] and flexibility matrix [m/N]: deflections there for unit loads there.
 
         For ``"actual"`` this is F of the bridge at its mass stations. For ``"basic"`` it is F* of
-        the bridge without its intermediate redundant supports, at the mass stations and at these
-        supports [1]_.
+        the bridge without its hinges and intermediate redundant supports, at the mass stations and
+        at these supports [1]_.
 
         References
         ----------
@@ -238,7 +618,11 @@ class Bridge:
         return self._core.flexibility(word("structure", structure, *get_args(Structure)))
 
     def redundant_stiffness(self) -> Array:
-        """K^R [N/m]: forces at the intermediate redundant supports for unit deflections there."""
+        """K^R [N/m]: forces at the intermediate redundant supports for unit deflections there.
+
+        Where such a support holds the rotation too, its couple and slope come after its force and
+        deflection.
+        """
         return self._core.redundant_stiffness()
 
     def outer_reactions(self) -> list[tuple[float, str, Array]]:
@@ -250,26 +634,43 @@ class Bridge:
         return self._core.outer_reactions()
 
     def influence_line(
-        self, quantity: Quantity, at: float, x: ArrayLike, structure: Structure = "actual"
+        self,
+        quantity: Quantity,
+        at: float,
+        x: ArrayLike,
+        structure: Structure = "actual",
+        *,
+        derivative: bool = False,
+        side: Side = "right",
     ) -> Array:
         """Response at one section for unit loads down at x, exact everywhere.
 
         Parameters
         ----------
-        quantity : {"deflection", "slope", "moment", "shear-left", "shear-right", "reaction"}
-            The response: deflection down, slope of the deflection, sagging moment, sum of the
-            upward forces to the left, reaction up.
+        quantity : str
+            The response: ``"deflection"`` down, its ``"slope"``, sagging ``"moment"``, sum of the
+            upward forces to the left as ``"shear-left"`` or ``"shear-right"``, ``"reaction"`` up,
+            ``"clamp-moment"`` as in `clamps`.
         at : float
-            The section, or the support for a reaction [m].
+            The section, or the support for a reaction or a clamp moment [m].
         x : array_like
-            Positions of the unit load [m]; where the line jumps, its value to the right.
+            Positions of the unit load [m].
         structure : {"actual", "basic"}, optional
-            The bridge with or without its intermediate redundant supports.
+            The bridge with or without its hinges and intermediate redundant supports.
+        derivative : bool, optional
+            Give the derivative along the bridge instead.
+        side : {"right", "left"}, optional
+            Where the line jumps or has a kink, its value or derivative on this side.
 
         Returns
         -------
         ndarray, shape of x
             Response per newton [m, rad, N m or N].
+
+        Raises
+        ------
+        ValueError
+            If a value is not allowed; if the bridge was given without this line.
         """
         where = array("x", x)
         line = self._core.influence_line(
@@ -277,6 +678,8 @@ class Bridge:
             number("at", at),
             where.ravel(),
             word("structure", structure, *get_args(Structure)),
+            bool(derivative),
+            _left(side),
         )
         return line.reshape(where.shape)
 
@@ -289,7 +692,28 @@ class Bridge:
 
 
 def _rebuilt(arguments: dict[str, Any]) -> Bridge:
+    for name in ("from_flexibility", "from_modes"):
+        if name in arguments:
+            bridge: Bridge = getattr(Bridge, name)(**arguments[name])
+            return bridge
     return Bridge(**arguments)
+
+
+def _redundant(i: int, value: object) -> tuple[float, float]:
+    """Position [m] and stiffness [N/m] of a redundant support."""
+    key = f"redundants[{i}]"
+    if not isinstance(value, Support | Mapping):
+        return number(key, value), np.inf
+    (x, vertical, rotation), *_ = supports_of("redundants", [value])
+    if rotation != 0.0:
+        raise ValueError(f"{key} rotation = {rotation:g}: must be 0; only the deflection is known")
+    return x, vertical
+
+
+def _left(side: object) -> bool:
+    if side not in get_args(Side):
+        raise ValueError(f"side = {shown(side)}: must be left or right")
+    return side == "left"
 
 
 def _modes(value: object) -> int:

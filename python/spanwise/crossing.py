@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from spanwise import _core
-from spanwise._checks import array, count, flag, number, numbers, shown, word
+from spanwise._checks import count, flag, number, numbers, shown, word
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
+from spanwise.damping import Damping, resolved
 from spanwise.roads import Road, Smooth
 from spanwise.run import Run
 from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
@@ -34,7 +32,7 @@ def cross(
     speed: float | None = None,
     modes: int | None = None,
     drive: Drive = "constant-speed",
-    damping: ArrayLike = 0.0,
+    damping: Damping = 0.0,
     road: Road | None = None,
     approach: float | None = None,
     ramp: float | None = None,
@@ -68,9 +66,10 @@ def cross(
     drive : {"constant-speed", "constant-traction"}, Acceleration, Speeds or Braking, optional
         Keep the speed; or keep traction and resistance in balance, so that the speed follows the
         slope of bridge and road; or one of the drives that have numbers of their own.
-    damping : float or array_like, optional
-        Ratio to critical damping, one for all modes or one for each; or the damping matrix C at the
-        moving masses [N s/m], shape (stations, stations).
+    damping : float, array_like or Rayleigh, optional
+        Ratio to critical damping, one for all modes or one for each; `Rayleigh`, or a table with
+        the key ``rayleigh`` and the values alpha and beta; or the damping matrix C at the moving
+        masses [N s/m], shape (stations, stations).
     road : Road, optional
         The road; smooth by default.
     approach : float, optional
@@ -144,12 +143,12 @@ def cross(
     if ramp is None:
         ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
     if modes is None:
-        spans = len(bridge.span_bounds) - 1
-        modes = min(len(bridge.stations), max(3, 2 * spans))
-    ratios, matrix = _damping(damping)
+        modes = bridge.default_modes()
+    modes = count("modes", modes)
+    ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
     beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
     approach, tail, mask = number("approach", approach), number("tail", tail), number("mask", mask)
-    modes, lift_off = count("modes", modes), flag("lift_off", lift_off)
+    lift_off = flag("lift_off", lift_off)
     recovery_word = word("recovery", recovery, *get_args(Recovery))
     if not 0.0 <= mask < 1.0:
         raise ValueError(
@@ -186,7 +185,7 @@ def cross(
         "mask": mask,
         "step": core.step,
     }
-    if np.ndim(damping) == 0:
+    if matrix is None and len(ratios) == 1:
         settings["damping"] = ratios[0]
     if speed is None:
         del settings["speed"]
@@ -228,17 +227,3 @@ def _core_passage(
         (passage.road or road)._core,
     )
 
-
-def _damping(damping: ArrayLike) -> tuple[list[float], NDArray[np.float64] | None]:
-    """The ratios, or the matrix."""
-    try:
-        dimensions = np.ndim(damping)
-    except ValueError:  # rows of different lengths
-        dimensions = 3
-    if dimensions < 2:
-        return numbers("damping", damping), None
-    if dimensions == 2:
-        return [], array("damping", damping)
-    raise ValueError(
-        f"damping = {shown(damping)}: must be a ratio, a list of ratios or a square matrix C"
-    )

@@ -138,7 +138,7 @@ class Responses:
 
     @property
     def clamp_moments(self) -> Array:
-        """Moments of the clamped ends, sagging positive [N m], shape (time, clamp)."""
+        """Moments of the supports of `Bridge.clamps` [N m], shape (time, clamp)."""
         return self._histories("clamp_moments")
 
 
@@ -408,11 +408,10 @@ class Run(Responses):
         quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
             The quantity.
         """
-        clamps = np.array([x for x, kind in self.bridge.supports if kind == "clamped"])
         columns = (Extremes._of(each) for each in self._core.envelope(quantity))
         where = {
             "reactions": self.supports,
-            "clamp_moments": clamps,
+            "clamp_moments": self.bridge.clamps,
             "axle_loads": np.arange(1.0, len(self.static_axle_loads) + 1.0),
         }
         return Envelope(where.get(quantity, self.sections), *columns)

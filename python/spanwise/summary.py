@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise.bridge import Bridge
 from spanwise.run import Extremes, Run
 from spanwise.table import factor_text
 from spanwise.vehicles import AnyVehicle
@@ -23,14 +24,14 @@ def summary(run: Run) -> str:
 def _description(run: Run) -> list[str]:
     bridge, truck, used = run.bridge, run.truck, run.settings
     held = ", ".join(f"{kind} at {x:g} m" for x, kind in bridge.supports)
-    rigidities = bridge.EI if np.ptp(bridge.EI) > 0.0 else bridge.EI[:1]
+    rigidities = _rigidity(bridge)
     ratios = np.asarray(used["damping"])
     damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
     # A train of forces has none.
     mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
     return [
         f"bridge    {bridge.length:g} m, {held}",
-        f"          EI {_list(rigidities, '.5g')} N m2; {len(bridge.masses)} moving masses, "
+        f"          {rigidities}{len(bridge.masses)} moving masses, "
         f"{bridge.masses.sum() / 1000.0:.4g} t",
         f"vehicle   {mass}static axle loads "
         f"{_list(run.static_axle_loads / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from first to "
@@ -63,6 +64,16 @@ def _frequencies(truck: AnyVehicle) -> Iterator[str]:
     else:
         for state, found in states.items():
             yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"
+def _rigidity(bridge: Bridge) -> str:
+    """EI: its values, or its range where there are many; nothing if it is unknown."""
+    if not bridge.described:
+        return ""
+    values = bridge.EI
+    if np.ptp(values) == 0.0:
+        values = values[:1]
+    if len(values) > 8:
+        return f"EI {values.min():.5g} to {values.max():.5g} N m2; "
+    return f"EI {_list(values, '.5g')} N m2; "
 
 
 def _governing(run: Run) -> list[str]:

@@ -2,19 +2,23 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use numpy::ndarray::Array1;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use faer::Mat;
+use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::{Matrix, Vector, matrix, rows};
+use crate::along::Along;
 use crate::analysis::Analysis;
-use crate::bridge::{Bridge, Fixity, Stations, Support};
+use crate::bridge::{Bridge, COINCIDENT, Fixity, Layout, Stations, Support};
 use crate::crossing::Damping;
 use crate::error::Error;
 use crate::flexibility::{Flexibility, Restraint, Structure};
-use crate::influence;
+use crate::given::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};
+use crate::influence::{self, Quantity};
+use crate::line::{Line, Mesh};
 use crate::modes::Modes;
 use crate::recovery::Recovery;
+use crate::settlement::Settled;
 
 fn fixity(name: &str, key: &str, free: bool) -> Result<Option<Fixity>, Error> {
     match name {
@@ -36,9 +40,15 @@ fn structure(name: &str) -> Result<Structure, Error> {
     }
 }
 
+/// Where a bridge comes from.
+enum Source {
+    Described(Box<Bridge>),
+    Given(Box<Given>),
+}
+
 /// A bridge with what was last worked out for it: one crossing after another need not prepare it anew.
 pub struct Solved {
-    bridge: Bridge,
+    source: Source,
     modes: Mutex<Option<Modes>>,
     analysis: Mutex<Option<(Asked, Arc<Analysis>)>>,
 }
@@ -53,8 +63,20 @@ pub struct Asked {
 }
 
 impl Solved {
-    fn new(bridge: Bridge) -> Self {
-        Solved { bridge, modes: Mutex::new(None), analysis: Mutex::new(None) }
+    fn new(source: Source) -> Self {
+        Solved { source, modes: Mutex::new(None), analysis: Mutex::new(None) }
+    }
+
+    /// The bridge, if it was described; `what` is asked of it.
+    fn described(&self, what: &str) -> Result<&Bridge, Error> {
+        match &self.source {
+            Source::Described(bridge) => Ok(bridge),
+            Source::Given(_) => {
+                let allowed = "only of a bridge described by its spans, supports and EI; this one was given by its \
+                               flexibility or its modes";
+                Err(Error::input(what, "unknown", allowed))
+            }
+        }
     }
 
     pub fn analysis(&self, asked: Asked, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Analysis>, Error> {
@@ -64,23 +86,98 @@ impl Solved {
         {
             return Ok(Arc::clone(analysis));
         }
-        let modes = self.modes(asked.modes)?;
         let sections = asked.sections.as_deref();
-        let analysis = Arc::new(Analysis::new(&self.bridge, modes, &asked.damping, sections, asked.recovery, go_on)?);
+        let analysis = Arc::new(match &self.source {
+            Source::Described(bridge) => {
+                let modes = self.modes(bridge, asked.modes)?;
+                Analysis::new(bridge, modes, &asked.damping, sections, asked.recovery, go_on)?
+            }
+            Source::Given(given) => Analysis::of_given(given, asked.modes, &asked.damping, sections, asked.recovery)?,
+        });
         *kept = Some((asked, Arc::clone(&analysis)));
         Ok(analysis)
     }
 
-    fn modes(&self, count: usize) -> Result<Modes, Error> {
+    fn modes(&self, bridge: &Bridge, count: usize) -> Result<Modes, Error> {
         let mut kept = self.modes.lock().unwrap_or_else(PoisonError::into_inner);
         match kept.as_ref() {
             Some(modes) if count > 0 && modes.len() >= count => Ok(modes.truncated(count)),
             _ => {
-                let modes = Modes::new(&self.bridge, &Flexibility::new(&self.bridge, &[])?, count)?;
+                let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, count)?;
                 *kept = Some(modes.clone());
                 Ok(modes)
             }
         }
+    }
+}
+
+/// Positions and springs of supports; the names pinned, clamped and free are Python's.
+type PySupport = (f64, f64, f64);
+
+fn supports_of(given: Vec<PySupport>) -> Vec<Support> {
+    let support = |(at, vertical, rotation)| Support { at, fixity: Fixity::Elastic { vertical, rotation } };
+    given.into_iter().map(support).collect()
+}
+
+/// Breakpoints, values and pieces of something along the beam; without breakpoints one value or one for each span.
+type PyAlong = (Option<Vec<f64>>, Vec<f64>, usize);
+
+fn along((at, values, pieces): PyAlong) -> Along {
+    match at {
+        Some(at) => Along::Between { at, values, pieces },
+        None => Along::PerSpan(values),
+    }
+}
+
+fn mat(a: PyReadonlyArray2<'_, f64>) -> Mat<f64> {
+    let a = a.as_array();
+    Mat::from_fn(a.nrows(), a.ncols(), |i, j| a[[i, j]])
+}
+
+/// Numbers on the right and, where they differ, on the left.
+type PySides<'py> = (PyReadonlyArray2<'py, f64>, Option<PyReadonlyArray2<'py, f64>>);
+
+fn two_sided((right, left): PySides<'_>) -> TwoSided {
+    TwoSided { right: mat(right), left: left.map(mat) }
+}
+
+/// Values and slopes of the influence lines of a kind of response, and the responses of the modes.
+type PyLines<'py> = (String, PySides<'py>, Option<PySides<'py>>, Option<PyReadonlyArray2<'py, f64>>);
+
+fn given_lines((name, values, slopes, modal): PyLines<'_>) -> Result<GivenLines, Error> {
+    let quantity = Quantity::ALL.into_iter().find(|q| q.name() == name).ok_or_else(|| {
+        let names = Quantity::ALL.map(Quantity::name).join(", ");
+        Error::input("influence", format!("\"{name}\""), format!("must be one of {names}"))
+    })?;
+    let (values, slopes) = (two_sided(values), slopes.map(two_sided));
+    Ok(GivenLines { quantity, values, slopes, modal: modal.map(mat) })
+}
+
+/// Value or derivative of lines at x, from the right or from the left; row by row for x.
+fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) -> Vec<f64> {
+    let near = COINCIDENT * mesh.length();
+    let place = |x: f64| {
+        let node = mesh.node_at(x);
+        match (mesh.nodes()[node] - x).abs() <= near && left && node > 0 {
+            true => Some((node - 1, 1.0)),
+            false => mesh.panel_at(x).map(|panel| (panel, mesh.fraction(panel, x))),
+        }
+    };
+    let value = |line: &Line, panel: usize, fraction: f64| match derivative {
+        true => line.slope(mesh, panel, fraction),
+        false => line.value(panel, fraction),
+    };
+    let at = |x: f64| {
+        let place = place(x);
+        lines.iter().map(move |line| place.map_or(0.0, |(panel, fraction)| value(line, panel, fraction)))
+    };
+    x.iter().flat_map(|&x| at(x)).collect()
+}
+
+fn on_the_beam(key: &str, at: f64, length: f64) -> Result<(), Error> {
+    match at >= 0.0 && at <= length {
+        true => Ok(()),
+        false => Err(Error::input(key, format!("{at} m"), format!("must lie on the beam, 0 to {length} m"))),
     }
 }
 
@@ -92,112 +189,219 @@ pub struct PyBridge(pub Solved);
 impl PyBridge {
     #[new]
     #[allow(clippy::too_many_arguments)] // one per argument that Python names
-    #[pyo3(signature = (*, length, supports, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
+    #[pyo3(signature = (*, length, supports, hinges, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
     fn new(
         py: Python<'_>,
         length: f64,
-        supports: Vec<(f64, String)>,
-        flexural_rigidity: Vec<f64>,
-        mass: Vec<f64>,
+        supports: Vec<PySupport>,
+        hinges: Vec<f64>,
+        flexural_rigidity: PyAlong,
+        mass: PyAlong,
         stations_per_span: Vec<usize>,
         stations: Option<Vec<f64>>,
         point_masses: Vec<(f64, f64)>,
     ) -> PyResult<Self> {
-        let supports = supports
-            .into_iter()
-            .enumerate()
-            .map(|(i, (at, name))| {
-                let fixity = fixity(&name, &format!("supports[{i}]"), false)?.unwrap_or(Fixity::Pinned);
-                Ok(Support { at, fixity })
-            })
-            .collect::<Result<_, Error>>()?;
-        let stations = stations.map_or(Stations::PerSpan(stations_per_span), Stations::At);
-        let bridge =
-            py.detach(|| Bridge::new(length, supports, &flexural_rigidity, &mass, &stations, &point_masses))?;
-        Ok(PyBridge(Solved::new(bridge)))
+        let layout = Layout {
+            length,
+            supports: supports_of(supports),
+            hinges,
+            flexural_rigidity: along(flexural_rigidity),
+            mass: along(mass),
+            stations: stations.map_or(Stations::PerSpan(stations_per_span), Stations::At),
+            point_masses,
+        };
+        let bridge = py.detach(|| {
+            let bridge = Bridge::from_layout(layout)?;
+            if !bridge.hinges().is_empty() {
+                // A mechanism shows in the flexibility.
+                Flexibility::new(&bridge, &[])?;
+            }
+            Ok::<_, Error>(bridge)
+        })?;
+        Ok(PyBridge(Solved::new(Source::Described(Box::new(bridge)))))
     }
 
+    /// Length and supports of consecutive spans.
+    #[staticmethod]
+    fn consecutive(spans: Vec<f64>, ends: (String, String)) -> PyResult<(f64, Vec<PySupport>)> {
+        let ends = [fixity(&ends.0, "ends[0]", true)?, fixity(&ends.1, "ends[1]", true)?];
+        let (length, supports) = Bridge::consecutive(&spans, ends)?;
+        Ok((length, supports.iter().map(|s| (s.at, s.fixity.vertical(), s.fixity.rotation())).collect()))
+    }
+
+    /// A bridge given by the flexibility of its basic bridge.
     #[staticmethod]
     #[allow(clippy::too_many_arguments)] // one per argument that Python names
-    #[pyo3(signature = (*, spans, ends, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
-    fn continuous(
+    #[pyo3(signature = (*, length, supports, stations, masses, redundants, path, flexibility, slopes))]
+    fn from_flexibility(
         py: Python<'_>,
-        spans: Vec<f64>,
-        ends: (String, String),
-        flexural_rigidity: Vec<f64>,
-        mass: Vec<f64>,
-        stations_per_span: Vec<usize>,
-        stations: Option<Vec<f64>>,
-        point_masses: Vec<(f64, f64)>,
+        length: f64,
+        supports: Vec<PySupport>,
+        stations: Vec<f64>,
+        masses: Vec<f64>,
+        redundants: Vec<(f64, f64)>,
+        path: Vec<f64>,
+        flexibility: PyReadonlyArray2<'_, f64>,
+        slopes: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<Self> {
-        let ends = [fixity(&ends.0, "ends[0]", true)?, fixity(&ends.1, "ends[1]", true)?];
-        let stations = stations.map_or(Stations::PerSpan(stations_per_span), Stations::At);
-        let bridge =
-            py.detach(|| Bridge::continuous(&spans, ends, &flexural_rigidity, &mass, &stations, &point_masses))?;
-        Ok(PyBridge(Solved::new(bridge)))
+        let (flexibility, slopes) = (mat(flexibility), slopes.map(mat));
+        let supports = supports_of(supports);
+        let data = ByFlexibility { length, supports, stations, masses, redundants, path, flexibility, slopes };
+        let given = py.detach(|| Given::by_flexibility(&data))?;
+        Ok(PyBridge(Solved::new(Source::Given(Box::new(given)))))
+    }
+
+    /// A bridge given by its modes.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)] // one per argument that Python names
+    #[pyo3(signature = (*, path, frequencies, shapes, slopes, sections, supports, influence, masses))]
+    fn from_modes(
+        py: Python<'_>,
+        path: Vec<f64>,
+        frequencies: Vec<f64>,
+        shapes: PySides<'_>,
+        slopes: Option<PySides<'_>>,
+        sections: Vec<f64>,
+        supports: Vec<PySupport>,
+        influence: Vec<PyLines<'_>>,
+        masses: Option<Vec<f64>>,
+    ) -> PyResult<Self> {
+        let influence = influence.into_iter().map(given_lines).collect::<Result<_, Error>>()?;
+        let (shapes, slopes) = (two_sided(shapes), slopes.map(two_sided));
+        let supports = supports_of(supports);
+        let data = ByModes { path, frequencies, shapes, slopes, sections, supports, influence, masses };
+        let given = py.detach(|| Given::by_modes(&data))?;
+        Ok(PyBridge(Solved::new(Source::Given(Box::new(given)))))
+    }
+
+    /// Whether it was described, not given.
+    #[getter]
+    fn described(&self) -> bool {
+        matches!(self.0.source, Source::Described(_))
     }
 
     #[getter]
     fn length(&self) -> f64 {
-        self.0.bridge.length()
+        match &self.0.source {
+            Source::Described(bridge) => bridge.length(),
+            Source::Given(given) => given.mesh().length(),
+        }
     }
 
     #[getter]
-    fn supports(&self) -> Vec<(f64, &'static str)> {
-        let name = |fixity| match fixity {
-            Fixity::Pinned => "pinned",
-            Fixity::Clamped => "clamped",
+    fn supports(&self) -> Vec<PySupport> {
+        let supports = match &self.0.source {
+            Source::Described(bridge) => bridge.supports(),
+            Source::Given(given) => given.supports(),
         };
-        self.0.bridge.supports().iter().map(|s| (s.at, name(s.fixity))).collect()
+        supports.iter().map(|s| (s.at, s.fixity.vertical(), s.fixity.rotation())).collect()
+    }
+
+    #[getter]
+    fn hinges<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        let hinges = match &self.0.source {
+            Source::Described(bridge) => bridge.hinges().to_vec(),
+            Source::Given(_) => Vec::new(),
+        };
+        hinges.into_pyarray(py)
+    }
+
+    /// Kinds of response of which nothing is known.
+    #[getter]
+    fn missing(&self) -> Vec<&'static str> {
+        match &self.0.source {
+            Source::Described(_) => Vec::new(),
+            Source::Given(given) => given.missing().iter().map(|q| q.name()).collect(),
+        }
     }
 
     #[getter]
     fn span_bounds<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.0.bridge.span_bounds().to_vec().into_pyarray(py)
+        let bounds = match &self.0.source {
+            Source::Described(bridge) => bridge.span_bounds().to_vec(),
+            Source::Given(given) => {
+                let length = given.mesh().length();
+                let inner = given.supports().iter().map(|s| s.at).filter(|&x| x > 0.0 && x < length);
+                std::iter::once(0.0).chain(inner).chain([length]).collect()
+            }
+        };
+        bounds.into_pyarray(py)
     }
 
     #[getter]
-    fn flexural_rigidity<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.0.bridge.flexural_rigidity().to_vec().into_pyarray(py)
+    fn flexural_rigidity<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
+        Ok(self.0.described("EI")?.flexural_rigidity().into_pyarray(py))
     }
 
     #[getter]
-    fn stations<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.0.bridge.stations().iter().map(|s| s.at).collect::<Array1<f64>>().into_pyarray(py)
+    fn rigidity_bounds<'py>(&self, py: Python<'py>) -> PyResult<Vector<'py>> {
+        Ok(self.0.described("EI_bounds")?.rigidity_bounds().to_vec().into_pyarray(py))
     }
 
+    /// Positions and values of the moving masses.
     #[getter]
-    fn masses<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.0.bridge.stations().iter().map(|s| s.mass).collect::<Array1<f64>>().into_pyarray(py)
+    fn masses<'py>(&self, py: Python<'py>) -> (Vector<'py>, Vector<'py>) {
+        let (x, m): (Vec<f64>, Vec<f64>) = match &self.0.source {
+            Source::Described(bridge) => bridge.stations().iter().map(|s| (s.at, s.mass)).unzip(),
+            Source::Given(given) => given.masses().unzip(),
+        };
+        (x.into_pyarray(py), m.into_pyarray(py))
+    }
+
+    /// Number of modes that can be asked for.
+    #[getter]
+    fn mode_count(&self) -> usize {
+        match &self.0.source {
+            Source::Described(bridge) => bridge.stations().len(),
+            Source::Given(given) => given.mode_count(),
+        }
+    }
+
+    /// Every position at which a line along the bridge changes its cubic.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        let nodes = match &self.0.source {
+            Source::Described(bridge) => Mesh::new(bridge.length(), bridge.points()).nodes().to_vec(),
+            Source::Given(given) => given.mesh().nodes().to_vec(),
+        };
+        nodes.into_pyarray(py)
     }
 
     fn default_sections<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.0.bridge.default_sections().into_pyarray(py)
+        let sections = match &self.0.source {
+            Source::Described(bridge) => bridge.default_sections(),
+            Source::Given(given) => given.sections(),
+        };
+        sections.into_pyarray(py)
     }
 
-    /// Circular frequencies, shapes at the stations, and shapes and slopes at x.
+    /// Circular frequencies, shapes at the stations, and shapes or their slopes at x.
+    #[pyo3(signature = (count, x, derivative, left))]
     fn modes<'py>(
         &self,
         py: Python<'py>,
         count: usize,
         x: Option<PyReadonlyArray1<'py, f64>>,
+        derivative: bool,
+        left: bool,
     ) -> PyResult<(Vector<'py>, Matrix<'py>, Option<Matrix<'py>>)> {
-        let bridge = &self.0.bridge;
-        let modes = py.detach(|| self.0.modes(count))?;
-        let along = match x {
-            None => None,
-            Some(x) => {
-                let x = x.as_array().to_vec();
-                let values = py.detach(|| {
+        let x = x.map(|x| x.as_array().to_vec());
+        let (modes, along) = py.detach(|| match &self.0.source {
+            Source::Described(bridge) => {
+                let modes = self.0.modes(bridge, count)?;
+                let along = x.map(|x| {
                     let flexibility = Flexibility::new(bridge, &[])?;
                     let lines = modes.lines(bridge, &flexibility);
-                    let mesh = flexibility.mesh();
-                    let values = x.iter().flat_map(|&x| lines.iter().map(move |line| line.at(mesh, x)));
-                    Ok::<Vec<f64>, Error>(values.collect())
-                })?;
-                Some(rows(py, values, modes.len())?)
+                    Ok::<_, Error>(read(flexibility.mesh(), &lines, &x, derivative, left))
+                });
+                Ok::<_, Error>((modes, along.transpose()?))
             }
-        };
+            Source::Given(given) => {
+                let (modes, lines) = given.modes(count)?;
+                Ok((modes, x.map(|x| read(given.mesh(), &lines, &x, derivative, left))))
+            }
+        })?;
+        let along = along.map(|values| rows(py, values, modes.len())).transpose()?;
         let shapes = matrix(py, &modes.shapes);
         Ok((modes.omega.into_pyarray(py), shapes, along))
     }
@@ -205,7 +409,7 @@ impl PyBridge {
     /// Positions of the reference stations and the flexibility matrix there: F* or F.
     fn flexibility<'py>(&self, py: Python<'py>, name: &str) -> PyResult<(Vector<'py>, Matrix<'py>)> {
         let structure = structure(name)?;
-        let bridge = &self.0.bridge;
+        let bridge = self.0.described("flexibility")?;
         let (x, f) = py.detach(|| {
             let flexibility = Flexibility::new(bridge, &[])?;
             let mut nodes = flexibility.reference_nodes(bridge);
@@ -219,16 +423,44 @@ impl PyBridge {
         Ok((x.into_pyarray(py), matrix(py, &f)))
     }
 
+    /// Deflections or slopes at x for unit loads: a row for each x, a column for each load.
+    #[pyo3(signature = (x, loads, name, derivative, left))]
+    fn deflections<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray1<'py, f64>,
+        loads: Vec<f64>,
+        name: &str,
+        derivative: bool,
+        left: bool,
+    ) -> PyResult<Matrix<'py>> {
+        let structure = structure(name)?;
+        let bridge = self.0.described("deflections")?;
+        for (i, &at) in loads.iter().enumerate() {
+            on_the_beam(&format!("loads[{i}]"), at, bridge.length())?;
+        }
+        let x = x.as_array().to_vec();
+        let values = py.detach(|| {
+            let flexibility = Flexibility::new(bridge, &loads)?;
+            let mesh = flexibility.mesh();
+            let lines: Vec<Line> =
+                loads.iter().map(|&at| influence::deflection(&flexibility, mesh.node_at(at), structure)).collect();
+            Ok::<_, Error>(read(mesh, &lines, &x, derivative, left))
+        })?;
+        rows(py, values, loads.len())
+    }
+
     /// K^R, the stiffness of the redundant supports.
     fn redundant_stiffness<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let flexibility = Flexibility::new(&self.0.bridge, &[])?;
+        let flexibility = Flexibility::new(self.0.described("redundant_stiffness")?, &[])?;
         Ok(matrix(py, &flexibility.redundant_stiffness()))
     }
 
     /// Restraints of the basic bridge: position, kind, and its reaction per unit load at each reference station.
     fn outer_reactions<'py>(&self, py: Python<'py>) -> PyResult<Vec<(f64, &'static str, Vector<'py>)>> {
-        let flexibility = Flexibility::new(&self.0.bridge, &[])?;
-        let nodes = flexibility.reference_nodes(&self.0.bridge);
+        let bridge = self.0.described("outer_reactions")?;
+        let flexibility = Flexibility::new(bridge, &[])?;
+        let nodes = flexibility.reference_nodes(bridge);
         let each = flexibility.outer_restraints().into_iter().map(|restraint| {
             let line = influence::reaction(&flexibility, restraint, Structure::Basic);
             let values: Vec<f64> = nodes.iter().map(|&node| line.at_node(node)).collect();
@@ -241,7 +473,27 @@ impl PyBridge {
         Ok(each.collect())
     }
 
-    /// Influence line of a response at `at`, for unit loads at x.
+    /// State after the supports have settled: deflection, moment, shear left and right, reactions, clamp moments.
+    fn settlement<'py>(
+        &self,
+        py: Python<'py>,
+        settlements: Vec<f64>,
+        sections: Vec<f64>,
+    ) -> PyResult<[Vector<'py>; 6]> {
+        let bridge = self.0.described("settlement")?;
+        for (i, &at) in sections.iter().enumerate() {
+            on_the_beam(&format!("sections[{i}]"), at, bridge.length())?;
+        }
+        let settled = py.detach(|| Settled::new(bridge, &settlements, &sections))?;
+        let side = |side: usize| settled.shear.iter().map(|shear| shear[side]).collect::<Vec<f64>>();
+        let (left, right) = (side(0), side(1));
+        Ok([settled.deflection, settled.moment, left, right, settled.reactions, settled.clamp_moments]
+            .map(|values| values.into_pyarray(py)))
+    }
+
+    /// Influence line of a response at `at`, or its derivative, for unit loads at x.
+    #[allow(clippy::too_many_arguments)] // one per argument that Python names
+    #[pyo3(signature = (quantity, at, x, name, derivative, left))]
     fn influence_line<'py>(
         &self,
         py: Python<'py>,
@@ -249,37 +501,54 @@ impl PyBridge {
         at: f64,
         x: PyReadonlyArray1<'py, f64>,
         name: &str,
+        derivative: bool,
+        left: bool,
     ) -> PyResult<Vector<'py>> {
         let structure = structure(name)?;
-        let bridge = &self.0.bridge;
-        if !(at >= 0.0 && at <= bridge.length()) {
-            let allowed = format!("must lie on the beam, 0 to {} m", bridge.length());
-            return Err(Error::input("at", format!("{at} m"), allowed).into());
-        }
-        let flexibility = Flexibility::new(bridge, &[at])?;
-        let node = flexibility.mesh().node_at(at);
-        let support = Restraint::Deflection(node);
-        let line = match quantity {
-            "deflection" => influence::deflection(&flexibility, node, structure),
-            "slope" => influence::slope(&flexibility, node, structure),
-            "moment" => influence::moment(&flexibility, node, structure),
-            "shear-left" => influence::shear(&flexibility, node, structure)[0].clone(),
-            "shear-right" => influence::shear(&flexibility, node, structure)[1].clone(),
-            "reaction" => {
-                let held = flexibility.outer_restraints().contains(&support)
-                    || (structure == Structure::Actual && flexibility.redundants().contains(&support));
-                if !held {
-                    let allowed = "must be the position of a support of this structure";
-                    return Err(Error::input("at", format!("{at} m"), allowed).into());
+        let x = x.as_array().to_vec();
+        on_the_beam("at", at, self.length())?;
+        let values = match &self.0.source {
+            Source::Described(bridge) => described_line(bridge, quantity, at, structure, |mesh, line| {
+                read(mesh, std::slice::from_ref(line), &x, derivative, left)
+            })?,
+            Source::Given(given) => {
+                if structure == Structure::Basic {
+                    self.0.described("influence_line of the basic bridge")?;
                 }
-                influence::reaction(&flexibility, support, structure)
-            }
-            _ => {
-                let allowed = "must be deflection, slope, moment, shear-left, shear-right or reaction";
-                return Err(Error::input("quantity", format!("\"{quantity}\""), allowed).into());
+                let line = given.line(quantity, at)?;
+                read(given.mesh(), std::slice::from_ref(line), &x, derivative, left)
             }
         };
-        let values = x.as_array().iter().map(|&x| line.at(flexibility.mesh(), x)).collect::<Array1<f64>>();
         Ok(values.into_pyarray(py))
     }
+}
+
+/// What is wanted of the influence line of a response of a bridge.
+fn described_line<T>(
+    bridge: &Bridge,
+    quantity: &str,
+    at: f64,
+    structure: Structure,
+    wanted: impl FnOnce(&Mesh, &Line) -> T,
+) -> Result<T, Error> {
+    let flexibility = Flexibility::new(bridge, &[at])?;
+    let node = flexibility.mesh().node_at(at);
+    let reaction = |restraint: Restraint, what: &str| match flexibility.restraints(structure).contains(&restraint) {
+        true => Ok(influence::reaction(&flexibility, restraint, structure)),
+        false => Err(Error::input("at", format!("{at} m"), format!("must be the position of {what}"))),
+    };
+    let line = match quantity {
+        "deflection" => influence::deflection(&flexibility, node, structure),
+        "slope" => influence::slope(&flexibility, node, structure),
+        "moment" => influence::moment(&flexibility, node, structure),
+        "shear-left" => influence::shear(&flexibility, node, structure)[0].clone(),
+        "shear-right" => influence::shear(&flexibility, node, structure)[1].clone(),
+        "reaction" => reaction(Restraint::Deflection(node), "a support of this structure")?,
+        "clamp-moment" => reaction(Restraint::Slope(node), "a support of this structure that holds the rotation")?,
+        _ => {
+            let allowed = "must be deflection, slope, moment, shear-left, shear-right, reaction or clamp-moment";
+            return Err(Error::input("quantity", format!("\"{quantity}\""), allowed));
+        }
+    };
+    Ok(wanted(flexibility.mesh(), &line))
 }

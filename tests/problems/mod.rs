@@ -6,9 +6,10 @@ pub mod elements;
 pub mod vehicles;
 
 use faer::Mat;
+use spanwise::along::Along;
 use spanwise::analysis::{Analysis, Outcome};
 use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Fixity, Stations, Support};
+use spanwise::bridge::{Bridge, Fixity, Layout, Stations, Support};
 use spanwise::course::Drive;
 use spanwise::crossing::{Damping, Settings};
 use spanwise::error::Error;
@@ -83,6 +84,80 @@ pub fn arrangements() -> Vec<(&'static str, Bridge)> {
     ]
 }
 
+/// Bridges with all that a beam bridge may have beyond the paper's: springs, hinges, EI and mass that vary.
+pub fn general_arrangements() -> Vec<(&'static str, Bridge)> {
+    let stations = |counts: &[usize]| Stations::PerSpan(counts.to_vec());
+    let plain = |length: f64, supports: Vec<Support>, counts: &[usize]| Layout {
+        length,
+        supports,
+        hinges: Vec::new(),
+        flexural_rigidity: Along::PerSpan(vec![1.9e9]),
+        mass: Along::PerSpan(vec![6.0e3]),
+        stations: stations(counts),
+        point_masses: Vec::new(),
+    };
+    let between = |at: &[f64], values: &[f64]| Along::Between { at: at.to_vec(), values: values.to_vec(), pieces: 3 };
+    let inf = f64::INFINITY;
+    let springs = vec![elastic(0.0, 8e7, 0.0), elastic(14.0, 2e8, 0.0), elastic(30.0, 5e7, 0.0)];
+    let turned = vec![elastic(0.0, inf, 3e8), elastic(12.0, inf, 9e8), elastic(27.0, 4e8, 2e8)];
+    let piers = vec![pinned(4.0), clamped(18.0), elastic(30.0, inf, 5e8), pinned(44.0)];
+    let gerber = vec![pinned(0.0), pinned(20.0), pinned(45.0), pinned(65.0)];
+    let mixed = vec![clamped(0.0), elastic(15.0, 3e8, 4e8), elastic(32.0, 2e8, 0.0), elastic(46.0, inf, 1e9)];
+    let cases = vec![
+        ("springs", plain(30.0, springs.clone(), &[3, 4])),
+        (
+            "springs, masses on them",
+            Layout { stations: Stations::At(vec![0.0, 6.0, 14.0, 20.0, 30.0]), ..plain(30.0, springs, &[]) },
+        ),
+        ("rotational springs", plain(30.0, turned, &[3, 3, 1])),
+        ("integral piers between overhangs", plain(48.0, piers, &[1, 3, 2, 3, 1])),
+        ("one column", plain(16.0, vec![elastic(7.0, 3e8, 8e9)], &[2, 3])),
+        ("guided at the left end", plain(18.0, vec![elastic(0.0, 6e7, inf), pinned(18.0)], &[6])),
+        ("built in from the right, sprung", plain(20.0, vec![elastic(0.0, 3e7, 2e7), clamped(20.0)], &[4])),
+        ("Gerber beam", Layout { hinges: vec![26.0, 40.0], ..plain(65.0, gerber.clone(), &[3, 4, 3]) }),
+        (
+            "hinge on a support and at a mass",
+            Layout {
+                hinges: vec![20.0, 55.0],
+                stations: Stations::At(vec![5.0, 15.0, 26.0, 38.0, 55.0, 60.0]),
+                ..plain(65.0, gerber, &[])
+            },
+        ),
+        (
+            "clamped, hinged, clamped",
+            Layout { hinges: vec![9.0], ..plain(20.0, vec![clamped(0.0), clamped(20.0)], &[6]) },
+        ),
+        (
+            "EI and mass between breakpoints",
+            Layout {
+                flexural_rigidity: between(&[0.0, 7.0, 15.0, 33.0], &[1e9, 3e9, 2e9]),
+                mass: between(&[0.0, 11.0, 33.0], &[8e3, 5e3]),
+                ..plain(33.0, vec![pinned(0.0), pinned(15.0), pinned(33.0)], &[3, 4])
+            },
+        ),
+        (
+            "all at once",
+            Layout {
+                hinges: vec![24.0, 40.0],
+                flexural_rigidity: between(&[0.0, 15.0, 30.0, 46.0], &[2e9, 4e9, 2e9, 1e9]),
+                mass: between(&[0.0, 15.0, 46.0], &[6e3, 9e3, 5e3]),
+                ..plain(46.0, mixed, &[3, 4, 3])
+            },
+        ),
+    ];
+    cases.into_iter().map(|(name, layout)| (name, Bridge::from_layout(layout).unwrap())).collect()
+}
+
+/// [`arrangements`] and [`general_arrangements`].
+pub fn all_arrangements() -> Vec<(&'static str, Bridge)> {
+    arrangements().into_iter().chain(general_arrangements()).collect()
+}
+
+/// A support on springs [N/m, N m/rad].
+pub fn elastic(at: f64, vertical: f64, rotation: f64) -> Support {
+    Support { at, fixity: Fixity::Elastic { vertical, rotation } }
+}
+
 /// Supports of the basic bridge: the outer ones ([KTN73] §2.3).
 pub fn outer_supports(bridge: &Bridge) -> Vec<Support> {
     let all = bridge.supports();
@@ -94,10 +169,21 @@ pub fn outer_supports(bridge: &Bridge) -> Vec<Support> {
 pub fn mirrored(bridge: &Bridge) -> Bridge {
     let length = bridge.length();
     let turned = |s: &Support| Support { at: length - s.at, ..*s };
-    let supports = bridge.supports().iter().rev().map(turned).collect();
-    let ei: Vec<f64> = bridge.flexural_rigidity().iter().rev().copied().collect();
-    let masses: Vec<(f64, f64)> = bridge.stations().iter().rev().map(|s| (length - s.at, s.mass)).collect();
-    Bridge::new(length, supports, &ei, &[0.0], &Stations::At(Vec::new()), &masses).unwrap()
+    let across = |positions: &[f64]| positions.iter().rev().map(|x| length - x).collect::<Vec<f64>>();
+    let mut at = across(bridge.rigidity_bounds());
+    let last = at.len() - 1;
+    (at[0], at[last]) = (0.0, length);
+    let values = bridge.flexural_rigidity().into_iter().rev().collect();
+    Bridge::from_layout(Layout {
+        length,
+        supports: bridge.supports().iter().rev().map(turned).collect(),
+        hinges: across(bridge.hinges()),
+        flexural_rigidity: Along::Between { at, values, pieces: 1 },
+        mass: Along::PerSpan(vec![0.0]),
+        stations: Stations::At(Vec::new()),
+        point_masses: bridge.stations().iter().rev().map(|s| (length - s.at, s.mass)).collect(),
+    })
+    .unwrap()
 }
 
 /// Points all over a bridge, left to right: ends, supports, stations, and others not too near these or each other.
@@ -105,8 +191,9 @@ pub fn mirrored(bridge: &Bridge) -> Bridge {
 /// Between neighbours lies a fiftieth of the length at least: the stiffness of an element goes with its length to the
 /// power of −3, and so does the rounding of what the elements give.
 pub fn points(bridge: &Bridge) -> Vec<f64> {
-    let mut all = bridge.span_bounds().to_vec();
-    all.extend(bridge.stations().iter().map(|s| s.at));
+    let mut all: Vec<f64> = bridge.points().collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|b, a| *b - *a <= 1e-9 * bridge.length());
     add_between(&mut all, bridge.length(), 1..9);
     all
 }
@@ -172,6 +259,8 @@ pub fn kishan_settings() -> Settings {
 /// A crossing of a bridge with everything that the tests look at.
 pub struct Run {
     pub bridge: Bridge,
+    /// On a mesh that has the sections as nodes.
+    pub flexibility: Flexibility,
     pub analysis: Analysis,
     pub outcome: Outcome,
     /// All responses at every instant, dynamic and static, row by row.
@@ -194,7 +283,8 @@ pub fn run(
     let outcome = analysis.cross(vehicle, settings, &mut || true)?;
     let all = 0..analysis.rows.len();
     let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
-    Ok(Run { bridge: bridge.clone(), analysis, outcome, responded })
+    let flexibility = Flexibility::new(bridge, &analysis.sections)?;
+    Ok(Run { bridge: bridge.clone(), flexibility, analysis, outcome, responded })
 }
 
 pub fn undamped() -> Damping {

@@ -1,0 +1,117 @@
+"""Damping of the bridge: ratios, Rayleigh's two constants, or a matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spanwise._checks import array, number, numbers, pairs, shown
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rayleigh:
+    """Damping in proportion to mass and stiffness, C = alpha M + beta K.
+
+    The ratio of a mode of circular frequency omega is alpha / (2 omega) + beta omega / 2.
+
+    Attributes
+    ----------
+    alpha : float
+        Factor of the mass [1/s].
+    beta : float
+        Factor of the stiffness [s].
+
+    Raises
+    ------
+    ValueError
+        If either is negative or not finite.
+    """
+
+    alpha: float
+    beta: float
+
+    def __post_init__(self) -> None:
+        for key in ("alpha", "beta"):
+            value = number(f"Rayleigh {key}", getattr(self, key))
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ValueError(f"Rayleigh {key} = {value}: must be finite and 0 or more")
+            object.__setattr__(self, key, value)
+
+    @classmethod
+    def from_ratios(cls, first: tuple[float, float], second: tuple[float, float]) -> Rayleigh:
+        """With two pairs of frequency [Hz] and ratio to critical."""
+        (f, z), (g, y) = (
+            (number(f"{name} frequency", pair[0]), number(f"{name} ratio", pair[1]))
+            for name, pair in (
+                ("first", _pair("first", first)),
+                ("second", _pair("second", second)),
+            )
+        )
+        for name, frequency, ratio in (("first", f, z), ("second", g, y)):
+            if not (np.isfinite(frequency) and frequency > 0.0):
+                raise ValueError(f"{name} frequency = {frequency}: must be greater than 0")
+            if not 0.0 <= ratio < 1.0:
+                raise ValueError(f"{name} ratio = {ratio}: must be from 0 to below 1")
+        if f == g:
+            raise ValueError(f"second frequency = {g}: must differ from the first")
+        w, v = 2.0 * np.pi * f, 2.0 * np.pi * g
+        beta = 2.0 * (v * y - w * z) / (v**2 - w**2)
+        alpha = 2.0 * w * z - beta * w**2
+        if alpha < 0.0 or beta < 0.0:
+            raise ValueError(
+                f"ratios {z:g} at {f:g} Hz and {y:g} at {g:g} Hz: would take alpha = {alpha:.3g} "
+                f"and beta = {beta:.3g}, neither of which may be negative; choose ratios that "
+                "differ less"
+            )
+        return cls(float(alpha), float(beta))
+
+    def ratios(self, frequencies: ArrayLike) -> Array:
+        """Ratios to critical at frequencies [Hz], of the same shape."""
+        omega = 2.0 * np.pi * array("frequencies", frequencies)
+        return 0.5 * (self.alpha / omega + self.beta * omega)
+
+
+#: Accepted as damping: ratios, a matrix C, `Rayleigh`, or a table ``{rayleigh = [alpha, beta]}``.
+Damping: TypeAlias = ArrayLike | Rayleigh | Mapping[str, Any]
+
+
+def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[float], Array | None]:
+    """The ratios, or the matrix C; `frequencies` [Hz] are those of the included modes."""
+    if isinstance(damping, Mapping):
+        if list(damping) != ["rayleigh"]:
+            raise ValueError(
+                f"damping = {shown(dict(damping))}: must be a number, a list or a matrix, or a table "
+                "with the key rayleigh and the values alpha and beta"
+            )
+        damping = Rayleigh(*_pair("damping rayleigh", damping["rayleigh"]))
+    if isinstance(damping, Rayleigh):
+        ratios = damping.ratios(frequencies())
+        for mode, ratio in enumerate(ratios, start=1):
+            if ratio >= 1.0:
+                raise ValueError(
+                    f"damping = {damping}: is {ratio:.3g} of critical in mode {mode}; must be from "
+                    "0 to below 1 in every included mode"
+                )
+        return ratios.tolist(), None
+    try:
+        dimensions = np.ndim(damping)  # type: ignore[arg-type]
+    except ValueError:  # rows of different lengths
+        dimensions = 3
+    if dimensions < 2:
+        return numbers("damping", damping), None
+    if dimensions == 2:
+        return [], array("damping", damping)
+    raise ValueError(
+        f"damping = {shown(damping)}: must be a ratio, a list of ratios, a square matrix C or "
+        "Rayleigh(alpha, beta)"
+    )
+
+
+def _pair(key: str, value: object) -> tuple[Any, Any]:
+    return pairs(key, [value])[0]

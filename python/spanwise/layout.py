@@ -1,0 +1,154 @@
+"""What a bridge is laid out with: supports on springs, and quantities that vary along the beam."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+from spanwise._checks import Numbers, count, number, numbers, shown
+from spanwise._keys import suggestion
+
+#: Pieces into which a stretch of linear EI is cut unless told otherwise.
+TAPER_PIECES: Final = 16
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """A support of the beam, rigid or on springs.
+
+    Attributes
+    ----------
+    at : float
+        Position from the left end [m].
+    vertical : float
+        Force for a unit of deflection [N/m], greater than 0; infinite where deflection is held, as
+        it is by default.
+    rotation : float
+        Couple for a unit of rotation [N m/rad]: 0, the default, where rotation is free, infinite
+        where it is held.
+    """
+
+    at: float
+    vertical: float = math.inf
+    rotation: float = 0.0
+
+    def __post_init__(self) -> None:
+        for key in ("at", "vertical", "rotation"):
+            object.__setattr__(self, key, _stiffness(f"support {key}", getattr(self, key)))
+
+    @property
+    def kind(self) -> str:
+        """``"pinned"``, ``"clamped"`` or, with a spring, ``"elastic"``."""
+        rigid = {(math.inf, 0.0): "pinned", (math.inf, math.inf): "clamped"}
+        return rigid.get((self.vertical, self.rotation), "elastic")
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """EI or mass that varies along the beam.
+
+    A stretch of linear EI is cut into equal pieces, each with the harmonic mean of its EI. The
+    error of deflections falls with the square of the number of pieces: of a cantilever whose EI
+    falls to a quarter from the root to the tip, with the default 16, the tip deflects 0.02 % too
+    much. Linear mass is integrated exactly.
+
+    Attributes
+    ----------
+    at : sequence of float
+        Breakpoints from 0 to the length [m], ascending, n + 1 of them.
+    values : sequence of float
+        n values are constant between the breakpoints, n + 1 values stand at the breakpoints and
+        are linear between them.
+    pieces : int
+        Pieces into which each stretch of linear EI is cut.
+    """
+
+    at: Sequence[float]
+    values: Sequence[float]
+    pieces: int = TAPER_PIECES
+
+
+#: Accepted for EI and mass: a number, one per span, `Along`, or its arguments in a table.
+AlongBeam: TypeAlias = Numbers | Along | Mapping[str, Any]
+
+#: Accepted for a support: position and kind, `Support`, or its arguments in a table.
+AnySupport: TypeAlias = tuple[float, str] | Sequence[Any] | Support | Mapping[str, Any]
+
+
+def along(key: str, value: object) -> tuple[list[float] | None, list[float], int]:
+    """Breakpoints or None, values, pieces."""
+    if isinstance(value, Mapping):
+        keys = ("at", "values", "pieces")
+        _check_keys(key, value, keys, keys[:2], "a number, one for each span,")
+        value = Along(**value)
+    if isinstance(value, Along):
+        pieces = count(f"{key} pieces", value.pieces)
+        return numbers(f"{key} at", value.at), numbers(f"{key} values", value.values), pieces
+    return None, numbers(key, value), 1
+
+
+def along_argument(given: tuple[list[float] | None, list[float], int]) -> Any:
+    """What makes the same again, as plain numbers and lists."""
+    at, values, pieces = given
+    return values if at is None else {"at": at, "values": values, "pieces": pieces}
+
+
+def support(key: str, value: object) -> tuple[float, float, float]:
+    """Position [m] and springs [N/m, N m/rad] of a support."""
+    if isinstance(value, Mapping):
+        keys = ("at", "vertical", "rotation")
+        _check_keys(key, value, keys, keys[:1], "a pair of position and kind")
+        springs = {name: _stiffness(f"{key} {name}", each) for name, each in value.items()}
+        value = Support(**springs)
+    if isinstance(value, Support):
+        return value.at, value.vertical, value.rotation
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise ValueError(
+            f"{key} = {shown(value)}: must be a pair of position and kind, "
+            "or a Support or table with at, vertical and rotation"
+        )
+    kinds = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
+    at, kind = value
+    if not isinstance(kind, str) or kind not in kinds:
+        raise ValueError(f"{key} = {shown(kind)}: must be pinned or clamped")
+    return number(f"{key} position", at), *kinds[kind]
+
+
+def supports(key: str, value: object) -> list[tuple[float, float, float]]:
+    """Positions [m] and springs [N/m, N m/rad] of the supports."""
+    if isinstance(value, str | bytes | Mapping) or not hasattr(value, "__iter__"):
+        raise ValueError(f"{key} = {shown(value)}: must be a list of supports")
+    return [support(f"{key}[{i}]", each) for i, each in enumerate(value)]
+
+
+def support_argument(one: Support) -> Any:
+    """What makes the same support again, as plain numbers, text and lists."""
+    if one.kind != "elastic":
+        return (one.at, one.kind)
+    springs = {"vertical": one.vertical, "rotation": one.rotation}
+    return {"at": one.at} | {k: v if math.isfinite(v) else "inf" for k, v in springs.items()}
+
+
+def _stiffness(key: str, value: object) -> float:
+    """A number; infinity may be spelled out, as JSON has none."""
+    return math.inf if value == "inf" else number(key, value)
+
+
+def _check_keys(
+    key: str,
+    table: Mapping[str, Any],
+    allowed: tuple[str, ...],
+    required: tuple[str, ...],
+    otherwise: str,
+) -> None:
+    """Refuse unknown and missing keys; `otherwise` is allowed in place of the table."""
+    wanted = (
+        f"{key} = {shown(dict(table))}: must be {otherwise} or a table with {', '.join(allowed)}"
+    )
+    for each in table:
+        if each not in allowed:
+            raise ValueError(f"{wanted}; unknown key {each!r}{suggestion(str(each), allowed)}")
+    if missing := [each for each in required if each not in table]:
+        raise ValueError(f"{wanted}; missing {', '.join(missing)}")
