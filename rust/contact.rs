@@ -125,22 +125,38 @@ impl<L: Lane> Contact<L> {
         Stroke::at_rest(self.suspension.map_or(L::splat(0.0), |s| s.initial))
     }
 
-    /// The increment p that solves p = law(u − S p) for a suspension that was at `before` at the start of the step.
+    /// Everything in p = law(u − S p) that holds for a whole step, for a suspension that was at `before` at its start.
+    #[inline]
+    pub fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
+        let softened = L::splat(1.0) / (L::splat(1.0) + self.stiffness * compliance);
+        let gain = self.stiffness * softened;
+        match &self.suspension {
+            None => Prepared { gain, past: L::splat(0.0), slope: L::splat(0.0), beside: L::splat(0.0) },
+            Some(suspension) => {
+                let past = suspension.past(before);
+                Prepared {
+                    gain,
+                    past: suspension.tyre_damping * past * softened,
+                    slope: suspension.tyre * softened,
+                    beside: suspension.initial + suspension.damping * past,
+                }
+            }
+        }
+    }
+
+    /// The increment p that solves p = law(u − S p).
     ///
     /// The law rises with δ and S ≥ 0, so the solution is unique.
     #[inline]
-    pub fn solve(&self, u: L, compliance: L, before: &Stroke<L>) -> L {
-        let softened = L::splat(1.0) + self.stiffness * compliance;
+    pub fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
         let p = match &self.suspension {
-            None => self.stiffness * u / softened,
+            None => prepared.gain * u,
             Some(suspension) => {
                 // From the tyre p = A − B s, which the suspension meets.
-                let past = suspension.past(before);
-                let top = (self.stiffness * u + suspension.tyre_damping * past) / softened;
-                let slope = suspension.tyre / softened;
-                let a = top + suspension.initial + suspension.damping * past;
-                let (s, _) = suspension.law.meet(a, slope + suspension.stiffness, before);
-                top - slope * s
+                let top = prepared.gain * u + prepared.past;
+                let b = prepared.slope + suspension.stiffness;
+                let (s, _) = suspension.law.meet(top + prepared.beside, b, before);
+                top - prepared.slope * s
             }
         };
         p.larger(self.floor)
@@ -154,6 +170,16 @@ impl<L: Lane> Contact<L> {
         let (shortening, friction) = suspension.law.meet(a, suspension.stiffness, before);
         Stroke { shortening, rate: suspension.per_step * shortening - past, friction }
     }
+}
+
+/// What holds for a whole step of one axle: from the tyre p = gain·u + past − slope·s.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared<L> {
+    gain: L,
+    past: L,
+    slope: L,
+    /// What the suspension carries besides its spring and the change of its friction: f₀ + c_s η.
+    beside: L,
 }
 
 /// A friction element between parts that have mass: f − f₀ is its force, beside a spring that is part of the vehicle.
@@ -218,8 +244,18 @@ impl<L: Lane> Elements<L> {
     /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
     /// and lift-off alike. (Tyre damping adds a part to S that is not symmetric, of the order of the step.) A lane that
     /// has settled is frozen, hence no sample depends on its neighbours. False if one did not.
-    pub fn solve(&self, u: &[L], compliance: &[L], before: &[Stroke<L>], p: &mut [L], frozen: L::Mask) -> bool {
+    pub fn solve(
+        &self,
+        u: &[L],
+        compliance: &[L],
+        before: &[Stroke<L>],
+        prepared: &mut Vec<Prepared<L>>,
+        p: &mut [L],
+        frozen: L::Mask,
+    ) -> bool {
         let n = self.len();
+        prepared.clear();
+        prepared.extend(self.contacts.iter().enumerate().map(|(k, c)| c.prepare(compliance[k * n + k], &before[k])));
         let weight = self.contacts.iter().fold(L::splat(0.0), |sum, c| sum + c.static_load);
         let tolerance = weight * L::splat(SETTLED);
         let mut done = frozen;
@@ -234,7 +270,7 @@ impl<L: Lane> Elements<L> {
                     }
                 }
                 let found = match self.contacts.get(k) {
-                    Some(contact) => contact.solve(others, row[k], &before[k]),
+                    Some(contact) => contact.solve(others, &prepared[k], &before[k]),
                     None => self.rubbing[k - self.contacts.len()].solve(others, row[k], &before[k]).0,
                 };
                 let next = L::select(done, p[k], found);

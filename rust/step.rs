@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::assembly::Assembly;
-use crate::contact::{Contact, Elements, Rubbing};
+use crate::contact::{Contact, Elements, Prepared, Rubbing};
 use crate::friction::Stroke;
 use crate::lane::Lane;
 use crate::modal::{ModalDamping, ModalSolve};
@@ -183,6 +183,7 @@ pub struct Stepper<L> {
     receptance: Vec<L>,
     compliance: Vec<L>,
     offset: Vec<L>,
+    prepared: Vec<Prepared<L>>,
     forces: Vec<L>,
 }
 
@@ -236,6 +237,7 @@ impl<L: Lane> Stepper<L> {
             receptance: vec![zero; modes * contacts],
             compliance: vec![zero; n * n],
             offset: vec![zero; n],
+            prepared: Vec::with_capacity(contacts),
             forces: vec![zero; modes],
         }
     }
@@ -363,7 +365,14 @@ impl<L: Lane> Stepper<L> {
     /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
     fn react(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>, frozen: L::Mask) -> Result<(), Unsettled> {
         self.couple(geometry);
-        if !self.elements.solve(&self.offset, &self.compliance, &state.strokes, &mut state.increments, frozen) {
+        if !self.elements.solve(
+            &self.offset,
+            &self.compliance,
+            &state.strokes,
+            &mut self.prepared,
+            &mut state.increments,
+            frozen,
+        ) {
             return Err(Unsettled::ContactForces);
         }
         self.move_bridge(state);
