@@ -1,9 +1,9 @@
 //! Dynamic response of beam bridges to vehicles: a few modes in time, then quasi-static recovery by force summation.
 //!
 //! The files follow the data: a [`bridge`] becomes cubic [`mod@line`]s by its [`flexibility`] and [`influence`] lines,
-//! whose [`modes`] carry the motion; a [`vehicle`] on its [`road`] presses on it through [`contact`] forces in every [`step`], along its
-//! [`path`], for a whole [`crossing`], whose [`history`] is kept; [`recovery`] turns modal states into responses, and the
-//! [`survey`] of a history into the [`envelope`] of their extremes.
+//! whose [`modes`] carry the motion; a [`vehicle`] on a [`road`] presses on it through [`contact`] forces in every
+//! [`step`], along its [`path`], for a whole [`crossing`], whose [`history`] is kept; [`recovery`] turns modal states into
+//! responses, and the [`survey`] of a history into the [`envelope`] of their extremes.
 
 pub mod error;
 

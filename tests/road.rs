@@ -164,26 +164,24 @@ fn power_is_the_integral_of_the_spectrum() {
     }
 }
 
-/// Forward transform of two real functions at once, recursively; power of each at wave number m per period.
+/// Powers of two real functions, transformed as one complex one, by wave number m per period.
 fn powers(first: &[f64], second: &[f64]) -> [Vec<f64>; 2] {
-    fn transform(z: &[Complex<f64>], roots: &[Complex<f64>]) -> Vec<Complex<f64>> {
-        if z.len() == 1 {
-            return z.to_vec();
-        }
-        let half = |odd: usize| transform(&z.iter().copied().skip(odd).step_by(2).collect::<Vec<_>>(), roots);
-        let (even, odd) = (half(0), half(1));
-        let (n, stride) = (z.len(), roots.len() / z.len());
-        (0..n)
-            .map(|k| {
-                let turned = odd[k % (n / 2)] * roots[(k % (n / 2)) * stride];
-                if k < n / 2 { even[k] + turned } else { even[k % (n / 2)] - turned }
-            })
-            .collect()
-    }
     let n = first.len();
-    let z: Vec<_> = first.iter().zip(second).map(|(a, b)| Complex::new(*a, *b)).collect();
-    let roots: Vec<_> = (0..n).map(|k| Complex::from_polar(1.0, -TAU * k as f64 / n as f64)).collect();
-    let z = transform(&z, &roots);
+    let shift = usize::BITS - n.trailing_zeros();
+    let reversed = (0..n).map(|i| i.reverse_bits() >> shift);
+    let mut z: Vec<_> = reversed.map(|i| Complex::new(first[i], second[i])).collect();
+    let mut half = 1;
+    while half < n {
+        let roots: Vec<_> = (0..half).map(|k| Complex::from_polar(1.0, -PI * k as f64 / half as f64)).collect();
+        for block in z.chunks_exact_mut(2 * half) {
+            let (even, odd) = block.split_at_mut(half);
+            for ((even, odd), root) in even.iter_mut().zip(odd).zip(&roots) {
+                let turned = *odd * root;
+                (*even, *odd) = (*even + turned, *even - turned);
+            }
+        }
+        half *= 2;
+    }
     let scale = 2.0 / (n as f64 * n as f64);
     let power = |m: usize, sign: f64| {
         let (a, b) = (z[m], z[n - m].conj());
