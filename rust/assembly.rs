@@ -227,7 +227,7 @@ impl Assembly {
     /// Each hinge takes one coordinate: the heave of the body that has it, z = z' + a'θ' − aθ.
     pub(crate) fn of_bodies(bodies: &[Body]) -> Result<Self, Error> {
         let order = front_first(bodies);
-        let (coordinates, heaves, pitches, hops) = coordinates(bodies, &order);
+        let Coordinates { names: coordinates, heaves, pitches, hops } = Coordinates::of(bodies, &order);
         let n = coordinates.len();
         let unit = |i: Option<usize>| DVector::from_fn(n, |j, _| f64::from(u8::from(i == Some(j))));
         let mut assembly = Assembly {
@@ -496,32 +496,41 @@ pub(crate) fn front_first(bodies: &[Body]) -> Vec<(usize, usize)> {
 }
 
 /// Names of the coordinates, and which of them are heave and pitch of each body and hop of each contact.
-///
-/// A hinged body has no heave of its own, and one on which everything acts at its centre of mass does not pitch.
-#[allow(clippy::type_complexity)]
-fn coordinates(
-    bodies: &[Body],
-    order: &[(usize, usize)],
-) -> (Vec<String>, Vec<Option<usize>>, Vec<Option<usize>>, Vec<Option<usize>>) {
-    let mut names: Vec<String> = Vec::new();
-    let mut name = |wanted: bool, text: String| {
-        wanted.then(|| {
-            names.push(text);
-            names.len() - 1
-        })
-    };
-    let (mut heaves, mut pitches) = (Vec::new(), Vec::new());
-    for (b, body) in bodies.iter().enumerate() {
-        let hinged = body.couplings.iter().any(Coupling::is_hinge);
-        heaves.push(name(!hinged, format!("body {} heave", b + 1)));
-        let mut points = body.axles.iter().map(|axle| axle.position).chain(body.couplings.iter().map(|c| c.ends().2));
-        let mut others = bodies.iter().flat_map(|other| &other.couplings).map(Coupling::ends);
-        let pitched = points.any(|x| x != 0.0) || others.any(|(to, at, _)| to == b && at != 0.0);
-        pitches.push(name(pitched, format!("body {} pitch", b + 1)));
+struct Coordinates {
+    names: Vec<String>,
+    heaves: Vec<Option<usize>>,
+    pitches: Vec<Option<usize>>,
+    hops: Vec<Option<usize>>,
+}
+
+impl Coordinates {
+    /// A hinged body has no heave of its own, and one on which everything acts at its centre of mass does not pitch.
+    fn of(bodies: &[Body], order: &[(usize, usize)]) -> Self {
+        let mut found = Coordinates { names: Vec::new(), heaves: Vec::new(), pitches: Vec::new(), hops: Vec::new() };
+        for (b, body) in bodies.iter().enumerate() {
+            let hinged = body.couplings.iter().any(Coupling::is_hinge);
+            let heave = found.name(!hinged, || format!("body {} heave", b + 1));
+            found.heaves.push(heave);
+            let own = body.couplings.iter().map(|coupling| coupling.ends().2);
+            let mut points = body.axles.iter().map(|axle| axle.position).chain(own);
+            let mut others = bodies.iter().flat_map(|other| &other.couplings).map(Coupling::ends);
+            let pitches = points.any(|x| x != 0.0) || others.any(|(to, at, _)| to == b && at != 0.0);
+            let pitch = found.name(pitches, || format!("body {} pitch", b + 1));
+            found.pitches.push(pitch);
+        }
+        for (k, &(b, i)) in order.iter().enumerate() {
+            let hop = found.name(bodies[b].axles[i].mass > 0.0, || format!("axle {} hop", k + 1));
+            found.hops.push(hop);
+        }
+        found
     }
-    let massive = |&(b, i): &(usize, usize)| bodies[b].axles[i].mass > 0.0;
-    let hops = order.iter().enumerate().map(|(k, at)| name(massive(at), format!("axle {} hop", k + 1))).collect();
-    (names, heaves, pitches, hops)
+
+    fn name(&mut self, wanted: bool, text: impl Fn() -> String) -> Option<usize> {
+        wanted.then(|| {
+            self.names.push(text());
+            self.names.len() - 1
+        })
+    }
 }
 
 /// A body's place from its own coordinates and the places of those it is coupled to.

@@ -147,6 +147,11 @@ def test_influence_line_of_shear_jumps_by_the_load(two_spans: Scene) -> None:
     assert np.diff(np.asarray(curve.get_ydata())).max() == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("name", ["quarter-car", "articulated-5-axle", "hs20-44", "hs20"])
+def test_models_of_the_catalogue(name: str) -> None:
+    check(sw.vehicles.PRESETS[name]().plot.model(), "m")
+
+
 def test_vehicle_model(drawn: Scene) -> None:
     check(drawn.vehicle.plot.model(), "m")
 

@@ -24,7 +24,7 @@ LOWEST: Final = 3
 def listing() -> str:
     """All presets in a table: axles, mass or weight, length, lowest frequencies, source."""
     names = max(map(len, PRESETS)) + 1
-    lines = [f"{'preset':<{names}} axles      total  length [m]  frequencies [Hz]      source"]
+    lines = [f"{'preset':<{names}} axles      total  length [m]  frequencies [Hz]       source"]
     for name, preset in PRESETS.items():
         vehicle = preset()
         marked = name + ("*" if preset.recalled else "")
@@ -33,7 +33,7 @@ def listing() -> str:
         sounding += ", ..." if len(found) > LOWEST else ""
         lines.append(
             f"{marked:<{names}} {len(vehicle.axle_positions):>5}  {_total(vehicle):>9}"
-            f"  {vehicle.wheelbase:>10.3f}  {sounding:<22}{preset.source}"
+            f"  {vehicle.wheelbase:>10.3f}  {sounding:<22} {preset.source}"
         )
     return "\n".join(
         [
