@@ -75,7 +75,11 @@ impl Damping {
                 let ratios: Vec<f64> = modes.omega.iter().map(|w| 0.5 * (mass / w + stiffness * w)).collect();
                 if let Some(m) = ratios.iter().position(|ratio| *ratio >= 1.0) {
                     let allowed = "Rayleigh damping must stay below critical in every included mode";
-                    return Err(Error::input("damping", format!("{} of critical in mode {}", ratios[m], m + 1), allowed));
+                    return Err(Error::input(
+                        "damping",
+                        format!("{} of critical in mode {}", ratios[m], m + 1),
+                        allowed,
+                    ));
                 }
                 Ok(ModalDamping::Classical(ratios))
             }

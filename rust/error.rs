@@ -99,7 +99,10 @@ impl Error {
 
     /// Whether the caller's input is at fault (otherwise the numerics are, or the user interrupted).
     pub fn is_input(&self) -> bool {
-        matches!(self, Error::Input { .. } | Error::Unstable { .. } | Error::Mechanism { .. } | Error::StepTooLong { .. })
+        matches!(
+            self,
+            Error::Input { .. } | Error::Unstable { .. } | Error::Mechanism { .. } | Error::StepTooLong { .. }
+        )
     }
 }
 

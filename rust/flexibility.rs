@@ -136,8 +136,7 @@ impl Hinges {
             return Ok(Hinges::none());
         }
         // Symmetric by reciprocity.
-        let resistance =
-            Mat::from_fn(n, n, |i, j| -flexibility.bending_moment(&lines[j.min(i)], nodes[j.max(i)]));
+        let resistance = Mat::from_fn(n, n, |i, j| -flexibility.bending_moment(&lines[j.min(i)], nodes[j.max(i)]));
         let stiffest = flexibility.flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
         let scale = stiffest / flexibility.mesh.length();
         let mut lower = Mat::<f64>::zeros(n, n);
@@ -163,8 +162,7 @@ impl Hinges {
     fn release(&self, flexibility: &Flexibility, line: &mut Line) {
         let Some(factor) = &self.factor else { return };
         // M_h + Σ α_j M_h(kink j) = 0.
-        let mut kinks =
-            Mat::from_fn(self.nodes.len(), 1, |i, _| flexibility.bending_moment(line, self.nodes[i]));
+        let mut kinks = Mat::from_fn(self.nodes.len(), 1, |i, _| flexibility.bending_moment(line, self.nodes[i]));
         factor.solve_in_place(kinks.as_mut());
         for (&kink, unit) in kinks.col(0).iter().zip(&self.lines) {
             line.add_scaled(kink, unit);

@@ -124,8 +124,8 @@ impl Given {
         match &self.motion {
             Motion::Flexibility { .. } => ModalFactors::of_masses(responses, &self.masses, modes, damping),
             Motion::Modes { rho, .. } => {
-                let by_masses = (!self.masses.is_empty())
-                    .then(|| ModalFactors::of_masses(responses, &self.masses, modes, damping));
+                let by_masses =
+                    (!self.masses.is_empty()).then(|| ModalFactors::of_masses(responses, &self.masses, modes, damping));
                 let n = self.responses.sections().len();
                 let rows: Vec<usize> =
                     (0..4).flat_map(|q| chosen.iter().map(move |s| q * n + s)).chain(4 * n..rho.nrows()).collect();
@@ -170,8 +170,11 @@ impl Given {
 
     /// The influence line of a response, by its name, at a section or support [m].
     pub fn line(&self, quantity: &str, at: f64) -> Result<&Line, Error> {
-        let known: Vec<&str> =
-            Quantity::ALL.iter().filter(|&&q| !self.missing.contains(&q) && !self.responses.range(q).is_empty()).map(|q| q.name()).collect();
+        let known: Vec<&str> = Quantity::ALL
+            .iter()
+            .filter(|&&q| !self.missing.contains(&q) && !self.responses.range(q).is_empty())
+            .map(|q| q.name())
+            .collect();
         let Some(quantity) = Quantity::ALL.into_iter().find(|q| q.name() == quantity && known.contains(&quantity))
         else {
             let allowed = format!("this bridge is given with {} only", known.join(", "));
@@ -179,9 +182,7 @@ impl Given {
         };
         let positions: Vec<f64> = match quantity {
             Quantity::Reaction => self.supports.iter().map(|s| s.at).collect(),
-            Quantity::ClampMoment => {
-                self.supports.iter().filter(|s| s.fixity.rotation() > 0.0).map(|s| s.at).collect()
-            }
+            Quantity::ClampMoment => self.supports.iter().filter(|s| s.fixity.rotation() > 0.0).map(|s| s.at).collect(),
             _ => self.sections(),
         };
         let near = COINCIDENT * self.mesh.length();

@@ -105,7 +105,11 @@ pub fn shear(flexibility: &Flexibility, node: usize, structure: Structure) -> [L
 
 /// Reaction of a restraint if the structure has it, else zero.
 fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
-    if flexibility.restraints(structure).contains(&restraint) { reaction(flexibility, restraint, structure) } else { Line::straight(flexibility.mesh(), 0.0, 0.0) }
+    if flexibility.restraints(structure).contains(&restraint) {
+        reaction(flexibility, restraint, structure)
+    } else {
+        Line::straight(flexibility.mesh(), 0.0, 0.0)
+    }
 }
 
 /// Every response looked at: deflection, moment and both shears at the sections, reactions, clamp moments.

@@ -163,8 +163,7 @@ impl ModalFactors {
         damping: (&Damping, &ModalDamping),
     ) -> Self {
         // Influence of a unit load at every mass station on every response.
-        let influence =
-            Mat::from_fn(responses.len(), masses.len(), |r, j| responses.at_station(r, masses[j].0));
+        let influence = Mat::from_fn(responses.len(), masses.len(), |r, j| responses.at_station(r, masses[j].0));
         let momentum = Mat::from_fn(masses.len(), modes.len(), |j, i| masses[j].1 * modes.shapes[(j, i)]);
         let inertia = &influence * &momentum;
         match damping {

@@ -144,12 +144,7 @@ impl Sequence {
     }
 
     /// Of the bridge without its hinges, which the basic bridge may enter with a deflected shape of its own.
-    fn recover_without_hinges(
-        &self,
-        axles: &[(f64, f64)],
-        inertia_forces: &[f64],
-        shape: Option<&Line>,
-    ) -> Recovered {
+    fn recover_without_hinges(&self, axles: &[(f64, f64)], inertia_forces: &[f64], shape: Option<&Line>) -> Recovered {
         let mesh = self.flexibility.mesh();
         let on_bridge: Vec<(f64, f64)> = axles.iter().copied().filter(|&(x, _)| mesh.panel_at(x).is_some()).collect();
 

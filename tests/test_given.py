@@ -270,19 +270,19 @@ def test_what_it_was_given_without() -> None:
     run = crossing(given, [float(path[3])], modes=2)
     assert np.isfinite(run.deflection).all()
     assert np.isnan(run.envelope("moment").max.value).all()
-    with pytest.raises(ValueError, match="moment.*without influence lines"):
+    with pytest.raises(ValueError, match=r"moment.*without influence lines"):
         _ = run.moment
-    with pytest.raises(ValueError, match="moment.*given with deflection only"):
+    with pytest.raises(ValueError, match=r"moment.*given with deflection only"):
         given.influence_line("moment", float(path[3]), path)
     with pytest.raises(ValueError, match=r"sections\[0\] = 1 m.*given at the sections"):
         crossing(given, [1.0], modes=2)
-    with pytest.raises(ValueError, match="EI = unknown.*given by its"):
+    with pytest.raises(ValueError, match=r"EI = unknown.*given by its"):
         _ = given.EI
     with pytest.raises(ValueError, match="settlement = unknown"):
         given.settlement([])
-    with pytest.raises(ValueError, match="modes = 3.*the number of modes given"):
+    with pytest.raises(ValueError, match=r"modes = 3.*the number of modes given"):
         given.modes(3)
-    with pytest.raises(ValueError, match="damping = a matrix C.*ratios only"):
+    with pytest.raises(ValueError, match=r"damping = a matrix C.*ratios only"):
         crossing(given, [float(path[3])], modes=2, damping=np.eye(2))
     assert "2 modes given" in repr(given)
     assert run.to_dict()["settings"]["bridge"]["from_modes"]["sections"] == [float(path[3])]
@@ -388,7 +388,7 @@ F = np.array([[3.0, 2.0, 1.0], [2.0, 4.0, 2.0], [1.0, 2.0, 3.0]]) * 1e-8
     ],
 )
 def test_refusals(make: Any, changes: dict[str, Any], words: tuple[str, ...]) -> None:
-    with pytest.raises(ValueError, match=".") as raised:
+    with pytest.raises(ValueError, match=r".") as raised:
         make(**changes)
     for each in words:
         assert each in str(raised.value), f"{each!r} not in {raised.value}"

@@ -55,7 +55,12 @@ impl Given {
             not_negative(format!("masses[{i}]"), mass)?;
         }
         let shape = (data.path.len(), n);
-        checked_matrix("flexibility", &data.flexibility, shape, "a row for each point of the path, a column for each station")?;
+        checked_matrix(
+            "flexibility",
+            &data.flexibility,
+            shape,
+            "a row for each point of the path, a column for each station",
+        )?;
         if let Some(slopes) = &data.slopes {
             checked_matrix("slopes", slopes, shape, "as many as the flexibility has")?;
         }
@@ -69,8 +74,7 @@ impl Given {
         check_symmetry(&data.flexibility, &rows)?;
 
         let mesh = Mesh::new(length, data.path.iter().copied().chain(outer.iter().map(|s| s.at)));
-        let basic: Vec<Line> =
-            (0..n).map(|j| column(data, &mesh, &outer, j)).collect::<Result<_, Error>>()?;
+        let basic: Vec<Line> = (0..n).map(|j| column(data, &mesh, &outer, j)).collect::<Result<_, Error>>()?;
         let node = |station: usize| mesh.node_at(data.stations[station]);
 
         // Redundant supports: their stations, and the reactions up to a unit load along the path.
@@ -220,7 +224,9 @@ fn column(data: &ByFlexibility, mesh: &Mesh, outer: &[Support], j: usize) -> Res
                     let h = x[next] - support.at;
                     values[next] / h - 0.5 * (slopes[next] - values[next] / h)
                 }
-                End::Natural => return Err(unknown("which does not stand at an end of the beam, where slopes are given")),
+                End::Natural => {
+                    return Err(unknown("which does not stand at an end of the beam, where slopes are given"));
+                }
             };
             slopes.insert(at, slope);
         }

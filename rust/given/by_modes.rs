@@ -64,7 +64,11 @@ impl Given {
     pub fn by_modes(data: &ByModes) -> Result<Self, Error> {
         let count = data.path.len();
         if count < 2 {
-            return Err(Error::input("path", format!("{count} points"), "give two points or more, from 0 to the length"));
+            return Err(Error::input(
+                "path",
+                format!("{count} points"),
+                "give two points or more, from 0 to the length",
+            ));
         }
         let length = checked_length(data.path[count - 1])?;
         checked_positions("path", &data.path, length)?;
@@ -84,7 +88,8 @@ impl Given {
             }
         }
         let supports = checked_supports_of_given(length, data.supports.clone())?;
-        let shapes = sides_checked("shapes", &data.shapes, (count, modes), "a row for each point, a column for each mode")?;
+        let shapes =
+            sides_checked("shapes", &data.shapes, (count, modes), "a row for each point, a column for each mode")?;
         let slopes = (data.slopes.as_ref())
             .map(|s| sides_checked("slopes", s, (count, modes), "as many as there are shapes"))
             .transpose()?;

@@ -92,9 +92,7 @@ impl Solved {
                 let modes = self.modes(bridge, asked.modes)?;
                 Analysis::new(bridge, modes, &asked.damping, sections, asked.recovery, go_on)?
             }
-            Source::Given(given) => {
-                Analysis::of_given(given, asked.modes, &asked.damping, sections, asked.recovery)?
-            }
+            Source::Given(given) => Analysis::of_given(given, asked.modes, &asked.damping, sections, asked.recovery)?,
         });
         *kept = Some((asked, Arc::clone(&analysis)));
         Ok(analysis)

@@ -102,33 +102,45 @@ pub fn general_arrangements() -> Vec<(&'static str, Bridge)> {
     let mixed = vec![clamped(0.0), elastic(15.0, 3e8, 4e8), elastic(32.0, 2e8, 0.0), elastic(46.0, inf, 1e9)];
     let cases = vec![
         ("springs", plain(30.0, springs.clone(), &[3, 4])),
-        ("springs, masses on them", Layout {
-            stations: Stations::At(vec![0.0, 6.0, 14.0, 20.0, 30.0]),
-            ..plain(30.0, springs, &[])
-        }),
+        (
+            "springs, masses on them",
+            Layout { stations: Stations::At(vec![0.0, 6.0, 14.0, 20.0, 30.0]), ..plain(30.0, springs, &[]) },
+        ),
         ("rotational springs", plain(30.0, turned, &[3, 3, 1])),
         ("integral piers between overhangs", plain(48.0, piers, &[1, 3, 2, 3, 1])),
         ("one column", plain(16.0, vec![elastic(7.0, 3e8, 8e9)], &[2, 3])),
         ("guided at the left end", plain(18.0, vec![elastic(0.0, 6e7, inf), pinned(18.0)], &[6])),
         ("built in from the right, sprung", plain(20.0, vec![elastic(0.0, 3e7, 2e7), clamped(20.0)], &[4])),
         ("Gerber beam", Layout { hinges: vec![26.0, 40.0], ..plain(65.0, gerber.clone(), &[3, 4, 3]) }),
-        ("hinge on a support and at a mass", Layout {
-            hinges: vec![20.0, 55.0],
-            stations: Stations::At(vec![5.0, 15.0, 26.0, 38.0, 55.0, 60.0]),
-            ..plain(65.0, gerber, &[])
-        }),
-        ("clamped, hinged, clamped", Layout { hinges: vec![9.0], ..plain(20.0, vec![clamped(0.0), clamped(20.0)], &[6]) }),
-        ("EI and mass between breakpoints", Layout {
-            flexural_rigidity: between(&[0.0, 7.0, 15.0, 33.0], &[1e9, 3e9, 2e9]),
-            mass: between(&[0.0, 11.0, 33.0], &[8e3, 5e3]),
-            ..plain(33.0, vec![pinned(0.0), pinned(15.0), pinned(33.0)], &[3, 4])
-        }),
-        ("all at once", Layout {
-            hinges: vec![24.0, 40.0],
-            flexural_rigidity: between(&[0.0, 15.0, 30.0, 46.0], &[2e9, 4e9, 2e9, 1e9]),
-            mass: between(&[0.0, 15.0, 46.0], &[6e3, 9e3, 5e3]),
-            ..plain(46.0, mixed, &[3, 4, 3])
-        }),
+        (
+            "hinge on a support and at a mass",
+            Layout {
+                hinges: vec![20.0, 55.0],
+                stations: Stations::At(vec![5.0, 15.0, 26.0, 38.0, 55.0, 60.0]),
+                ..plain(65.0, gerber, &[])
+            },
+        ),
+        (
+            "clamped, hinged, clamped",
+            Layout { hinges: vec![9.0], ..plain(20.0, vec![clamped(0.0), clamped(20.0)], &[6]) },
+        ),
+        (
+            "EI and mass between breakpoints",
+            Layout {
+                flexural_rigidity: between(&[0.0, 7.0, 15.0, 33.0], &[1e9, 3e9, 2e9]),
+                mass: between(&[0.0, 11.0, 33.0], &[8e3, 5e3]),
+                ..plain(33.0, vec![pinned(0.0), pinned(15.0), pinned(33.0)], &[3, 4])
+            },
+        ),
+        (
+            "all at once",
+            Layout {
+                hinges: vec![24.0, 40.0],
+                flexural_rigidity: between(&[0.0, 15.0, 30.0, 46.0], &[2e9, 4e9, 2e9, 1e9]),
+                mass: between(&[0.0, 15.0, 46.0], &[6e3, 9e3, 5e3]),
+                ..plain(46.0, mixed, &[3, 4, 3])
+            },
+        ),
     ];
     cases.into_iter().map(|(name, layout)| (name, Bridge::from_layout(layout).unwrap())).collect()
 }
