@@ -4,7 +4,7 @@ use crate::bridge::{COINCIDENT, MAX_STATIONS};
 use crate::error::{Error, finite, not_negative, positive};
 
 /// Pieces into which a stretch of linear EI is cut unless the user gives a number.
-pub const TAPER_PIECES: usize = 16;
+pub const TAPER_PIECES: usize = 32;
 
 /// A quantity along the beam, as given.
 #[derive(Debug, Clone, PartialEq)]

@@ -170,7 +170,11 @@ impl Given {
 
     /// The influence line of a response, by its name, at a section or support [m].
     pub fn line(&self, quantity: &str, at: f64) -> Result<&Line, Error> {
-        let known: Vec<&str> = Quantity::ALL.iter().filter(|q| !self.missing.contains(q)).map(|q| q.name()).collect();
+        let known: Vec<&str> = Quantity::ALL
+            .iter()
+            .filter(|&&q| !self.missing.contains(&q) && !self.responses.range(q).is_empty())
+            .map(|q| q.name())
+            .collect();
         let Some(quantity) = Quantity::ALL.into_iter().find(|q| q.name() == quantity && known.contains(&quantity))
         else {
             let allowed = format!("this bridge is given with {} only", known.join(", "));

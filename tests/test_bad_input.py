@@ -134,8 +134,8 @@ BRIDGES: list[tuple[Callable[..., sw.Bridge], dict[str, Any], tuple[str, ...]]] 
             ("[1]", key, shown, "or"),
         )
         for key, bad, shown in (
-            *(("vertical", bad, str(bad)) for bad in (0, -1e6, -inf)),
-            *(("rotation", bad, str(bad)) for bad in (-1e6, -inf)),
+            *(("vertical", bad, str(bad)) for bad in (0, -1000000, -inf)),
+            *(("rotation", bad, str(bad)) for bad in (-1000000, -inf)),
             *((key, nan, "NaN") for key in ("vertical", "rotation")),
         )
     ),

@@ -86,8 +86,8 @@ def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[fl
     if isinstance(damping, Mapping):
         if list(damping) != ["rayleigh"]:
             raise ValueError(
-                f"damping = {shown(dict(damping))}: must be a number, a list or a matrix, or a table "
-                "with the key rayleigh and the values alpha and beta"
+                f"damping = {shown(dict(damping))}: must be a number, a list or a matrix, or a "
+                "table with the key rayleigh and the values alpha and beta"
             )
         damping = Rayleigh(*_pair("damping rayleigh", damping["rayleigh"]))
     if isinstance(damping, Rayleigh):

@@ -136,13 +136,9 @@ impl Given {
                 let line = statics.shear(&mesh, section, right);
                 // A redundant at the section itself stands to the right of its left side, to the left of its right side.
                 let at_redundant = |node: usize| match node == section {
-                    true if right => {
-                        if node == 0 {
-                            0.0
-                        } else {
-                            line.before(node)
-                        }
-                    }
+                    true if right && node == 0 => line.after(node) - 1.0,
+                    true if right => line.before(node),
+                    true if node == mesh.panels() => line.before(node) + 1.0,
                     true => line.after(node),
                     false => line.at_node(node),
                 };

@@ -143,6 +143,8 @@ impl Given {
             };
             match data.influence.iter().find(|g| g.quantity == quantity) {
                 Some(given) => all.extend(influence_lines(given, &rows, &mesh, level)?),
+                // Without a clamp there is no moment of one to be missing.
+                None if quantity == Quantity::ClampMoment && rows.is_empty() => {}
                 None => {
                     missing.push(quantity);
                     all.extend(vec![Line::straight(&mesh, 0.0, 0.0); rows.len()]);
@@ -152,7 +154,7 @@ impl Given {
         if missing.contains(&Quantity::ShearLeft) != missing.contains(&Quantity::ShearRight) {
             return Err(Error::input("influence", "shear on one side only", "give both shear-left and shear-right"));
         }
-        if missing.len() == Quantity::ALL.len() {
+        if data.influence.is_empty() {
             let allowed = "give the influence lines of one response or more: deflection, moment, shear-left and \
                            shear-right, reaction, clamp-moment";
             return Err(Error::input("influence", "{}", allowed));

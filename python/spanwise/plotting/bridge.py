@@ -41,6 +41,7 @@ INFLUENCES: Final[dict[str, Measure]] = {
     "moment": Measure("Bending moment, sagging\ndrawn down, for 1 kN [kN m]", 1.0, downward=True),
     "shear-left": Measure("Shear force on the left\nfor 1 kN [kN]", 1.0),
     "shear-right": Measure("Shear force on the right\nfor 1 kN [kN]", 1.0),
+    "clamp-moment": Measure("Moment of the support\nfor 1 kN [kN m]", 1.0),
     "reaction": Measure("Reaction, up,\nfor 1 kN [kN]", 1.0),
 }
 
@@ -55,7 +56,8 @@ class BridgePlot:
     def model(self, *, ax: Axes | None = None) -> Figure:
         """The lumped-mass beam on its supports, to scale along the bridge.
 
-        Dots are masses, their area in proportion. Letters name the supports.
+        Dots are masses, their area in proportion; open circles are hinges. Coils are springs, a
+        spiral one for the rotation. Letters name the supports.
 
         Parameters
         ----------
@@ -74,7 +76,7 @@ class BridgePlot:
 
     @styled
     def basic_bridge(self, *, ax: Axes | None = None) -> Figure:
-        """The bridge without its intermediate redundant supports.
+        """The bridge without its hinges and intermediate redundant supports.
 
         These are all supports between the first and the last one. Where they were is drawn as open
         circles: they stay reference stations (Kishan and Traill-Nash 1973, Fig. 3).
@@ -90,7 +92,8 @@ class BridgePlot:
         """
         ax = axes_for(ax, height=1.75)
         supports = self._bridge.supports
-        draw_bridge(ax, self._bridge, [s for s in supports if s in (supports[0], supports[-1])])
+        outer = [s for s in supports if s in (supports[0], supports[-1])]
+        draw_bridge(ax, self._bridge, outer, hinges=False)
         _dimensions(ax, self._bridge)
         if removed := [x for x, _ in supports[1:-1]]:
             ax.plot(
@@ -164,12 +167,12 @@ class BridgePlot:
 
         Parameters
         ----------
-        quantity : {"deflection", "slope", "moment", "shear-left", "shear-right", "reaction"}
-            The response.
+        quantity : str
+            The response, as in `Bridge.influence_line`.
         at : float
             The section, or the support for a reaction [m].
         structure : {"actual", "basic"}, optional
-            The bridge with or without its intermediate redundant supports.
+            The bridge with or without its hinges and intermediate redundant supports.
         ax : matplotlib.axes.Axes, optional
             Where to draw; by default in a new figure.
 
@@ -195,7 +198,12 @@ class BridgePlot:
 
 
 def draw_bridge(
-    ax: Axes, bridge: Bridge, supports: list[tuple[float, str]], *, above: float = 34.0
+    ax: Axes,
+    bridge: Bridge,
+    supports: list[tuple[float, str]],
+    *,
+    above: float = 34.0,
+    hinges: bool = True,
 ) -> None:
     """Beam, masses and these supports of it, with so many points left above the beam."""
     length = bridge.length
@@ -207,14 +215,25 @@ def draw_bridge(
     symbols.stroke(ax, symbols.level(ax), [(0.0, 0.0), (length, 0.0)], width=2.2)
     held = any(kind == "clamped" for _, kind in supports)
     letters = dict(zip(bridge.supports, support_letters(bridge), strict=True))
+    springs = dict(zip(bridge.supports, bridge.springs, strict=True))
     for support in supports:
         x, kind = support
-        if kind == "clamped":
+        rotation = springs[support].rotation
+        if kind == "clamped" and x in (0.0, length):
             symbols.clamp(ax, x, left=x == 0.0)
+        elif kind == "clamped":
+            symbols.clamped_pier(ax, x)
+        elif np.isfinite(springs[support].vertical):
+            symbols.sprung(ax, x, turning=0.0 < rotation < np.inf, held=rotation == np.inf)
         else:
             symbols.pin(ax, x, roller=held)
             held = True
+            if rotation > 0.0:
+                symbols.spiral(ax, x)
         symbols.write(ax, symbols.local(ax, x), 0.0, -24.5, letters[support], size=9.0)
+    if hinges:
+        for x in bridge.hinges:
+            symbols.hinge(ax, x)
     if len(bridge.masses):
         ax.scatter(
             bridge.stations,
@@ -241,7 +260,7 @@ def _note(ax: Axes, bridge: Bridge, text: str) -> None:
 def _masses(bridge: Bridge) -> str:
     """How many masses there are and how heavy."""
     if len(bridge.masses) == 0:
-        return "no masses"
+        return f"{bridge.mode_count} modes given"
     tonnes = 1e-3 * bridge.masses
     least, most = f"{tonnes.min():.4g}", f"{tonnes.max():.4g}"
     each = f"{least} t each" if least == most else f"{least} to {most} t"

@@ -33,7 +33,7 @@ def envelope_of(run: Run, quantity: Quantity) -> Envelope:
     """The envelope, refused if there is nothing in it."""
     envelope = run.envelope(quantity)
     if len(envelope.x) == 0:
-        raise ValueError(f"quantity = {quantity!r}: this bridge has no clamped end")
+        raise ValueError(f"quantity = {quantity!r}: no support of this bridge holds the rotation")
     return envelope
 
 
@@ -118,8 +118,8 @@ def _name_bars(ax: Axes, run: Run, quantity: str) -> None:
     else:
         names = [
             f"{letter}\n{metres(x)}"
-            for letter, (x, kind) in supports
-            if quantity == "reactions" or kind == "clamped"
+            for letter, (x, _) in supports
+            if quantity == "reactions" or x in run.bridge.clamps
         ]
         ax.set_xlabel("Support [letter, distance from the left end]")
     ax.set_xticks(range(len(names)), names)

@@ -129,6 +129,41 @@ def clamp(ax: Axes, x: float, *, left: bool) -> None:
         stroke(ax, here, [(0.0, y), (side * 4.0, y - 3.5)], width=0.6)
 
 
+def clamped_pier(ax: Axes, x: float) -> None:
+    """A support inside the beam that holds deflection and rotation: a block on hatched ground."""
+    here = local(ax, x)
+    stroke(ax, here, [(-4.0, -1.5), (4.0, -1.5), (4.0, -10.0), (-4.0, -10.0)], fill="white")
+    stroke(ax, here, [(-8.0, -10.0), (8.0, -10.0)])
+    hatch(ax, here, -6.0, 9.0, -10.0, 3.2)
+
+
+def sprung(ax: Axes, x: float, *, turning: bool, held: bool) -> None:
+    """A support on an upright spring; with a spring for the rotation, or with rotation held."""
+    here = local(ax, x)
+    if held:
+        stroke(ax, here, [(-5.0, -2.2), (5.0, -2.2)], width=1.6)
+    spring(ax, x, 0.0, -14.5, -2.0, 3.2)
+    stroke(ax, here, [(-8.0, -14.5), (8.0, -14.5)])
+    hatch(ax, here, -6.0, 9.0, -14.5, 3.2)
+    if turning:
+        spiral(ax, x)
+
+
+def spiral(ax: Axes, x: float) -> None:
+    """A spring that resists rotation, around the base line."""
+    turn = np.linspace(0.0, 3.5 * np.pi, 61)
+    radius = 2.0 + 5.0 * turn / turn[-1]
+    coil = np.column_stack([radius * np.cos(turn), radius * np.sin(turn)])
+    stroke(ax, local(ax, x), coil, width=0.8, order=6.0)
+
+
+def hinge(ax: Axes, x: float) -> None:
+    """An open circle in the beam."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 37)
+    ring = np.column_stack([2.6 * np.cos(turn), 2.6 * np.sin(turn)])
+    stroke(ax, local(ax, x), ring, width=1.0, fill="white", order=5.5)
+
+
 def spring(ax: Axes, x: float, shift: float, low: float, high: float, half_width: float) -> None:
     """An upright spring between two heights, shifted sideways; all in points but x."""
     lead = 0.16 * (high - low)
