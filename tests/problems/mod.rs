@@ -3,6 +3,8 @@
 
 pub mod answers;
 pub mod elements;
+pub mod mechanics;
+pub mod vehicles;
 
 use faer::Mat;
 use spanwise::analysis::{Analysis, Outcome};
