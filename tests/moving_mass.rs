@@ -13,10 +13,10 @@ use spanwise::crossing::Settings;
 use spanwise::recovery::Recovery::Superposition;
 use spanwise::vehicle::Vehicle;
 
-/// Deflections and forces in steps of a hundredth of the shortest period, relative to the largest: what steps of
+/// Deflections and forces in steps of a two-hundredth of the shortest period, relative to the largest: what steps of
 /// second order leave, a few millionths of the deflection, and of the force, which is its second derivative, some tenths
 /// of a thousandth.
-const DEFLECTION: f64 = 1e-5;
+const DEFLECTION: f64 = 2e-5;
 const FORCE: f64 = 1e-3;
 
 /// Steps of the reference to a step of the crossing: its own error is less by orders.
@@ -149,7 +149,7 @@ impl Masses {
     }
 }
 
-/// Steps of a crossing, each about a hundredth of the period of the fifth mode.
+/// Steps of a crossing, each a two-hundredth of the period of the fifth mode.
 fn steps(alpha: f64) -> usize {
     (2500.0 / alpha) as usize
 }

@@ -1,6 +1,5 @@
 //! What tests need to write down equations of motion beside those of the library.
 
-use faer::Mat;
 use spanwise::analysis::Analysis;
 use spanwise::bridge::Bridge;
 use spanwise::course::Passage;
@@ -11,6 +10,8 @@ use spanwise::line::{Line, Mesh};
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
+use spanwise::road::patch::Patch;
+use spanwise::road::profile::Profile;
 use spanwise::vehicle::Vehicle;
 
 use super::Run;
@@ -204,9 +205,18 @@ impl Budget {
     }
 }
 
-/// C of a bridge that is damped in proportion to its mass, at a ratio to critical for a circular frequency.
-pub fn mass_damping(bridge: &Bridge, ratio: f64, omega: f64) -> Damping {
-    let stations = bridge.stations();
-    let of = |i: usize, j: usize| if i == j { 2.0 * ratio * omega * stations[i].mass } else { 0.0 };
-    Damping::Viscous(Mat::from_fn(stations.len(), stations.len(), of))
+/// A road that grows from level to another one between two places, twice differentiable, known from `ends` to `ends`.
+pub fn faded(road: &Road, [from, to]: [f64; 2], ends: [f64; 2]) -> Road {
+    profile(ends, |x| {
+        let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+        t * t * t * (10.0 + t * (6.0 * t - 15.0)) * road.at(x).elevation
+    })
+}
+
+/// A measured road with points every 100 mm.
+pub fn profile(ends: [f64; 2], elevation: impl Fn(f64) -> f64) -> Road {
+    let points = ((ends[1] - ends[0]) / 0.1).round() as usize;
+    let x: Vec<f64> = (0..=points).map(|i| ends[0] + (ends[1] - ends[0]) * i as f64 / points as f64).collect();
+    let elevations = x.iter().map(|&x| elevation(x)).collect();
+    Profile::new(x, elevations, false, Patch::new(0.0).unwrap(), None).unwrap().into()
 }
