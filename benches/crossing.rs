@@ -4,9 +4,10 @@
 mod problems;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use problems::vehicles::{articulated_5_axle, half_car};
+use problems::vehicles::{articulated, half_car};
 use problems::{kishan_bridge, kishan_vehicle, undamped};
 use spanwise::analysis::Analysis;
+use spanwise::assembly::Friction;
 use spanwise::course::{Direction, Drive, Passage};
 use spanwise::crossing::{Settings, cross, cross_all};
 use spanwise::flexibility::Flexibility;
@@ -52,11 +53,12 @@ fn vehicles(c: &mut Criterion) {
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
     let analysis = Analysis::new(&bridge, modes, &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
     let settings = Settings { step: Some(1e-3), ..Settings::at_speed(22.86) };
-    let opposing = Passage { direction: Direction::Left, lane: 1, ..Passage::of(half_car()) };
+    let half_car = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
+    let opposing = Passage { direction: Direction::Left, lane: 1, ..Passage::of(half_car.clone()) };
     let cases = [
-        ("half_car", vec![Passage::of(half_car())]),
-        ("articulated_5_axle", vec![Passage::of(articulated_5_axle())]),
-        ("two_vehicles_opposing", vec![Passage::of(half_car()), opposing]),
+        ("half_car", vec![Passage::of(half_car.clone())]),
+        ("articulated_5_axle", vec![Passage::of(articulated(0.1, 1.0))]),
+        ("two_vehicles_opposing", vec![Passage::of(half_car), opposing]),
     ];
     let mut group = c.benchmark_group("crossing");
     for (name, passages) in cases {

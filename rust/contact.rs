@@ -159,7 +159,8 @@ impl<L: Lane> Contact<L> {
                 top - prepared.slope * s
             }
         };
-        p.larger(self.floor)
+        // In this order, so that what is not a number stays so and is found.
+        self.floor.larger(p)
     }
 
     /// The suspension at the end of a step that ended with increment p.

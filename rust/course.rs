@@ -195,8 +195,10 @@ impl<'a> Course<'a> {
         if self.road.is_smooth() {
             return Ok(());
         }
-        let behind = if settings.ramp > 0.0 { 0.0 } else { self.wheelbase() };
-        let (from, to) = (-settings.approach - behind, length + self.wheelbase());
+        // Without a ramp the road counts from where the last axle is at the beginning, before the vehicle's entry.
+        let first =
+            if settings.ramp > 0.0 { -settings.approach } else { self.motion.at(-self.entry).x - self.wheelbase() };
+        let (from, to) = (first, length + self.wheelbase());
         match self.direction {
             Direction::Right => self.road.check_covers(from, to),
             Direction::Left => self.road.check_covers(length - to, length - from),

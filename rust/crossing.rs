@@ -563,9 +563,16 @@ impl<'a> March<'a> {
             let ends = [geometry.motion(course.axles.start).x, geometry.motion(course.axles.end - 1).x];
             [ends[0].min(ends[1]), ends[0].max(ends[1])]
         };
-        for (j, second) in self.courses.iter().enumerate().skip(1) {
+        // From its entry until it has left the bridge: before, a vehicle is only where its speed would have had it.
+        let there = |course: &Course<'_>| {
+            let last = geometry.motion(course.axles.end - 1).x;
+            let left = if course.direction == Direction::Right { last > self.length } else { last < 0.0 };
+            time >= course.entry && !left
+        };
+        for (j, second) in self.courses.iter().enumerate().skip(1).filter(|(_, second)| there(second)) {
             let b = stretch(second);
-            for (i, first) in self.courses[..j].iter().enumerate().filter(|(_, first)| first.lane == second.lane) {
+            let others = self.courses[..j].iter().enumerate();
+            for (i, first) in others.filter(|(_, first)| first.lane == second.lane && there(first)) {
                 let a = stretch(first);
                 if a[0] <= b[1] && b[0] <= a[1] {
                     let value = format!("vehicles {i} and {j} in lane {}", second.lane);

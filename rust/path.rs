@@ -77,7 +77,8 @@ impl Pavement<'_> {
             return Surface { elevation: self.road.at(self.end).elevation, slope: 0.0, curvature: 0.0 };
         }
         let point = self.road.at(x);
-        if way >= self.ramp {
+        // Without a ramp the road is there behind the start too, under the axles that follow the first.
+        if self.ramp == 0.0 || way >= self.ramp {
             return Surface { elevation: point.elevation, slope: point.slope, curvature: point.curvature };
         }
         // 6t⁵ − 15t⁴ + 10t³: no jump in value, slope or curvature at either end.

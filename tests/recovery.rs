@@ -236,7 +236,8 @@ fn eq_6_is_eq_11_with_classical_damping() {
 
 #[test]
 fn eq_6_differs_from_eq_11_by_the_damping_forces_that_the_modes_miss() {
-    for (name, bridge) in all_arrangements() {
+    // Where there are no more masses than modes, none is missed.
+    for (name, bridge) in all_arrangements().into_iter().filter(|(_, bridge)| bridge.stations().len() > MODES) {
         let c = uneven_damping(&bridge);
         let run = crossed(&bridge, MODES, &Damping::Viscous(c.clone()), ForceSummation);
         let [forces, difference, unexplained] = eq_6_and_eq_11(&run, &c);

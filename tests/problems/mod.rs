@@ -3,6 +3,7 @@
 
 pub mod answers;
 pub mod elements;
+pub mod mechanics;
 pub mod vehicles;
 
 use faer::Mat;
