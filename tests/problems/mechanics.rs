@@ -72,7 +72,8 @@ pub fn run_all(
     let outcome = analysis.cross_all(passages, settings, &mut || true)?;
     let all = 0..analysis.rows.len();
     let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
-    Ok(Run { bridge: bridge.clone(), analysis, outcome, responded })
+    let flexibility = Flexibility::new(bridge, &analysis.sections)?;
+    Ok(Run { bridge: bridge.clone(), flexibility, analysis, outcome, responded })
 }
 
 /// Values, velocities and accelerations of a vehicle's coordinates at an instant, its travel last.
