@@ -146,7 +146,8 @@ def test_splines_in_place_of_slopes() -> None:
     bridge = sw.Bridge(spans=[18.0, 22.0], EI=1.9e9, mass=6e3, stations_per_span=4)
     path = np.union1d(np.linspace(0.0, 18.0, 41), np.linspace(18.0, 40.0, 41))
     sections = [0.0, 9.0, 18.0, float(path[60]), 40.0]
-    places: dict[Any, list[float]] = dict.fromkeys(("deflection", "moment", "shear-left", "shear-right"), sections)
+    of_sections = ("deflection", "moment", "shear-left", "shear-right")
+    places: dict[Any, list[float]] = dict.fromkeys(of_sections, sections)
     places["reaction"] = [0.0, 18.0, 40.0]
     modes = bridge.modes(3)
     influence = {
@@ -218,7 +219,7 @@ def test_given_by_its_flexibility(name: str) -> None:
     c = np.diag(50.0 + bridge.masses)
     for damping in (0.02, sw.Rayleigh(0.4, 1e-4), c):
         one, other = (crossing(each, stations, damping=damping) for each in (bridge, given))
-            found = apart(one, other)
+        found = apart(one, other)
         print(f"{name}: {found:.1e}")
         assert found <= SAME
 
