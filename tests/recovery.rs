@@ -231,6 +231,12 @@ fn eq_6_is_eq_11_with_classical_damping() {
         let [forces, difference, _] = eq_6_and_eq_11(&rayleigh, &c);
         println!("{name}: Rayleigh {:.1e}", difference / forces);
         assert!(difference <= ROUNDING * forces, "{name}: Rayleigh, {:.2e} of P̃", difference / forces);
+        // As ratios it is the same damping.
+        let by_ratios = Damping::Rayleigh { mass: 0.9, stiffness: 0.002 };
+        let by_ratios = crossed(&bridge, MODES, &by_ratios, ForceSummation).history_of(Quantity::Moment);
+        let by_matrix = rayleigh.history_of(Quantity::Moment);
+        let apart = largest_difference(&by_ratios, &by_matrix) / largest_magnitude(&by_matrix);
+        assert!(apart <= 1e-9, "{name}: Rayleigh by ratios and by a matrix, {apart:.1e} apart");
     }
 }
 

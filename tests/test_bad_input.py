@@ -187,7 +187,7 @@ BRIDGES: list[tuple[Callable[..., sw.Bridge], dict[str, Any], tuple[str, ...]]] 
     *(
         (
             on_supports,
-            {"EI": sw.Along([0.0, 20.0], [1e9, 2e9], bad)},
+            {"EI": {"at": [0.0, 20.0], "values": [1e9, 2e9], "pieces": bad}},
             ("EI pieces", str(bad), "must"),
         )
         for bad in (0, -1, 5000, 1.5)

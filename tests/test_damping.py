@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from numpy.typing import NDArray
 
 import spanwise as sw
 
-TWO_SPANS = {"spans": [18.0, 22.0], "EI": 1.9e9, "mass": 6e3, "stations_per_span": 3}
+TWO_SPANS: dict[str, Any] = {
+    "spans": [18.0, 22.0],
+    "EI": 1.9e9,
+    "mass": 6e3,
+    "stations_per_span": 3,
+}
 
 
-def moments(damping: object) -> np.ndarray:
+BAD_PAIRS: Any = (1.0, 2.0)
+
+
+def moments(damping: Any) -> NDArray[np.float64]:
     bridge, vehicle = sw.Bridge(**TWO_SPANS), sw.vehicles.kishan_1973()
-    run = sw.cross(bridge, vehicle, speed=20.0, modes=4, step=2e-3, damping=damping)  # type: ignore[arg-type]
+    run = sw.cross(bridge, vehicle, speed=20.0, modes=4, step=2e-3, damping=damping)
     return run.moment
 
 
@@ -46,14 +58,14 @@ def test_it_is_a_set_of_ratios_and_a_matrix() -> None:
         (lambda: sw.Rayleigh.from_ratios((0.0, 0.02), (2.0, 0.03)), ("first frequency", "0")),
         (lambda: sw.Rayleigh.from_ratios((1.0, 1.5), (2.0, 0.03)), ("first ratio", "1.5")),
         (lambda: sw.Rayleigh.from_ratios((1.0, 0.1), (9.0, 0.001)), ("beta", "negative")),
-        (lambda: sw.Rayleigh.from_ratios(1.0, 2.0), ("first", "pair")),  # type: ignore[arg-type]
+        (lambda: sw.Rayleigh.from_ratios(*BAD_PAIRS), ("first", "pair")),
         (lambda: moments(sw.Rayleigh(0.0, 0.1)), ("damping", "mode", "below 1")),
         (lambda: moments({"rayleigh": 3.0}), ("rayleigh", "3.0", "pair")),
         (lambda: moments({"reyleigh": [0.0, 0.0]}), ("damping", "reyleigh", "key rayleigh")),
     ],
 )
-def test_refusals(make: object, words: tuple[str, ...]) -> None:
+def test_refusals(make: Callable[[], object], words: tuple[str, ...]) -> None:
     with pytest.raises(ValueError, match=r".") as raised:
-        make()  # type: ignore[operator]
+        make()
     for each in words:
         assert each in str(raised.value), f"{each!r} not in {raised.value}"
