@@ -437,7 +437,8 @@ impl<'a> March<'a> {
         let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
         let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0.0, front(geometry)))?;
         for (travel, course) in state.travel.iter_mut().zip(self.courses) {
-            *travel = course.centre(0.0);
+            let centre = course.centre(0.0);
+            *travel = if course.rolls { Coordinate { a: travel.a, ..centre } } else { centre };
         }
         self.check_apart(0.0, geometry)?;
         self.record(0.0, &state, geometry);

@@ -261,6 +261,17 @@ impl<L: Lane> Stepper<L> {
         self.predict(&state);
         self.push_along(&mut state, geometry);
         self.react(&mut state, geometry, L::never())?;
+        // The loads of the first instant do not depend on how the vehicles surge under them.
+        for (u, unit) in self.units.iter_mut().enumerate().filter(|(_, unit)| unit.propulsion == Propulsion::Rolling) {
+            let mut force = zero;
+            for (own, contact) in unit.contacts.clone().enumerate() {
+                state.along[contact] = along(unit, own, contact, &self.elements, &state, geometry);
+                force = force + state.along[contact];
+            }
+            state.travel[u].a = force / unit.rig.total_mass;
+            unit.rig.surge(&state.along[unit.contacts.clone()]);
+        }
+        self.react(&mut state, geometry, L::never())?;
         Ok(state)
     }
 

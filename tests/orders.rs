@@ -1,0 +1,326 @@
+//! Orders of the time step for general vehicles, and motion along the road by hand.
+
+mod problems;
+
+use problems::mechanics::{Budget, motion, orders, profile, run_all, state};
+use problems::vehicles::{articulated, elastic, half_car};
+use problems::*;
+use spanwise::assembly::Friction;
+use spanwise::bridge::{Bridge, Stations};
+use spanwise::course::{Braking, Direction, Drive, Passage};
+use spanwise::crossing::{Damping, Settings};
+use spanwise::influence::Quantity;
+use spanwise::recovery::Recovery::ForceSummation;
+use spanwise::road::Road;
+use spanwise::vehicle::Vehicle;
+
+/// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
+const ORDER: f64 = 2.0;
+const ORDER_MARGIN: f64 = 0.1;
+
+/// Two computations of the same thing, relative to its largest value.
+const ROUNDING: f64 = 1e-9;
+
+/// What is left of the vehicle's rocking some seconds after its brakes are on, relative to the load that they shift.
+const LEFT: f64 = 1e-3;
+
+const GRAVITY: f64 = 9.806_65;
+
+/// Simple span of 24 m. Axles of the vehicles here are quarters of a metre apart or less, and the approach is 12 m.
+const SPAN: f64 = 24.0;
+const APPROACH: f64 = 12.0;
+
+fn bridge(stiffer: f64) -> Bridge {
+    let stations = Stations::PerSpan(vec![11]);
+    Bridge::continuous(&[SPAN], [PINNED; 2], &[4e9 * stiffer], &[8e3], &stations, &[]).unwrap()
+}
+
+fn damping() -> Damping {
+    Damping::Ratios(vec![0.01])
+}
+
+fn crossed(bridge: &Bridge, vehicle: &Vehicle, settings: &Settings) -> Run {
+    run(bridge, vehicle, settings, 3, &damping(), ForceSummation, &[0.5 * SPAN]).unwrap()
+}
+
+/// State at a way of the front axle since the start, in steps of a tenth of a metre over 2, 4, and so on.
+fn states(vehicle: &Vehicle, settings: &Settings, way: f64, halvings: std::ops::Range<u32>) -> Vec<Vec<f64>> {
+    let of = |halvings: u32| {
+        let step = 0.05 / f64::from(1 << halvings) / settings.speed;
+        // A path of so many steps; beyond the bridge the tail fills the last one up.
+        let run = crossed(&bridge(1.0), vehicle, &Settings { step: Some(step), ..settings.clone() });
+        let history = &run.outcome.history;
+        let row = (way / settings.speed / history.step).round() as usize;
+        assert!((history.time[row] * settings.speed - way).abs() < ROUNDING, "not the fixed time");
+        state(&run, row, true)
+    };
+    halvings.map(of).collect()
+}
+
+fn observed(vehicle: &Vehicle, settings: &Settings, way: f64, halvings: std::ops::Range<u32>) -> Vec<f64> {
+    let states = states(vehicle, settings, way, halvings);
+    let scale: Vec<f64> = states[0].iter().map(|v| v.abs().max(1e-12)).collect();
+    orders(&states, &scale)
+}
+
+/// Settings of an approach on which nothing happens, to a path that is a multiple of 50 mm.
+fn settings(drive: Drive) -> Settings {
+    Settings { drive, approach: APPROACH, ..Settings::at_speed(20.0) }
+}
+
+fn soft_bump() -> Road {
+    profile([-60.0, 60.0], |x| {
+        let t = (x + 9.0) / 6.0;
+        if t.abs() < 1.0 { 0.004 * (1.0 - t * t).powi(4) } else { 0.0 }
+    })
+}
+
+/// Rates count where a tyre has a damper; the slope under an axle that meets the deflected bridge jumps then.
+#[test]
+fn tyre_damping_is_of_second_order_until_the_second_axle_enters() {
+    let vehicle = half_car([700.0, 1100.0], 1.0, 5.0, Friction::NONE);
+    let drive = Drive::ConstantSpeed;
+    for way in [13.0, 16.0] {
+        let orders = observed(&vehicle, &settings(drive.clone()), way, 1..5);
+        println!("front axle at {way} m: orders {orders:.3?}");
+        assert!(orders.iter().all(|o| (o - ORDER).abs() <= ORDER_MARGIN), "{way} m: {orders:?}");
+    }
+    // The second axle enters at 16.75 m. What that leaves of first order is small later on.
+    let orders = observed(&vehicle, &settings(drive.clone()), 17.0, 3..8);
+    println!("front axle at 17 m: orders {orders:.3?}");
+    assert!(orders.iter().all(|o| (o - 1.0).abs() <= ORDER_MARGIN), "{orders:?}");
+    let orders = observed(&vehicle, &settings(drive), 30.0, 3..8);
+    println!("front axle at 30 m: orders {orders:.3?}");
+    assert!(orders.iter().all(|&o| o >= 1.0 - ORDER_MARGIN), "{orders:?}");
+}
+
+/// Without dampers in the tyres the forces follow displacements alone, and axles may come and go.
+#[test]
+fn general_vehicles_are_of_second_order() {
+    let bump = std::sync::Arc::new(soft_bump());
+    for (name, vehicle) in [
+        ("unsprung masses", half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE)),
+        ("articulated", articulated(0.5, 0.0)),
+    ] {
+        for beta in [1.0 / 6.0, 0.25] {
+            for way in [16.0, 24.0, 33.0] {
+                let settings = Settings { beta, road: bump.clone(), ..settings(Drive::ConstantSpeed) };
+                let orders = observed(&vehicle, &settings, way, 2..6);
+                println!("{name}, beta {beta:.3}, front axle at {way} m: orders {orders:.3?}");
+                assert!(orders.iter().all(|o| (o - ORDER).abs() <= ORDER_MARGIN), "{name}, {way} m: {orders:?}");
+            }
+        }
+    }
+}
+
+/// On the approach tyre damping costs no order on a road with a continuous slope, on which the front axle begins.
+#[test]
+fn tyre_damping_on_a_bump_is_of_second_order() {
+    let road = std::sync::Arc::new(soft_bump());
+    for vehicle in [half_car([700.0, 1100.0], 1.0, 5.0, Friction::NONE), articulated(0.5, 2.0)] {
+        for drive in [Drive::ConstantSpeed, Drive::ConstantTraction, Drive::Acceleration(-3.0)] {
+            let settings = Settings { road: road.clone(), ..settings(drive.clone()) };
+            let orders = observed(&vehicle, &settings, 8.0, 0..4);
+            println!("{drive:?}: orders {orders:.3?}");
+            assert!(orders.iter().all(|o| (o - ORDER).abs() <= ORDER_MARGIN), "{drive:?}: {orders:?}");
+        }
+    }
+}
+
+/// Wheels in the air and friction that gives way: kinks within steps, but nothing worse.
+#[test]
+fn lift_off_and_sliding_are_of_first_order_at_least() {
+    let high = std::sync::Arc::new(profile([-60.0, 60.0], |x| 30.0 * soft_bump().at(x).elevation));
+    let low = std::sync::Arc::new(soft_bump());
+    for (name, vehicle, road, flies) in [
+        ("lift-off", half_car([700.0, 1100.0], 0.5, 0.0, Friction::NONE), &high, true),
+        ("sliding", half_car([700.0, 1100.0], 0.5, 0.0, elastic(2e3, 2e7)), &low, false),
+        ("sliding, massless", half_car([0.0; 2], 0.0, 0.0, Friction::coulomb(2e3)), &low, false),
+        ("both", half_car([700.0, 1100.0], 0.1, 0.5, elastic(4e3, 2e7)), &high, true),
+    ] {
+        let settings = Settings { road: road.clone(), ..settings(Drive::ConstantSpeed) };
+        let run = crossed(&bridge(1.0), &vehicle, &settings);
+        assert_eq!(!run.outcome.history.lift_offs().is_empty(), flies, "{name}");
+        let at = states(&vehicle, &settings, 15.0, 1..8);
+        let scale: Vec<f64> = at[0].iter().map(|v| v.abs().max(1e-12)).collect();
+        let orders = orders(&at, &scale);
+        let mean = orders.iter().sum::<f64>() / orders.len() as f64;
+        println!("{name}: {mean:.2}, {orders:.2?}");
+        assert!(mean >= 0.9, "{name}: {orders:?}");
+    }
+}
+
+/// With all axles on the bridge a freely rolling vehicle loses nothing and gains nothing, its parts moving along the
+/// road as bodies pitch.
+#[test]
+fn constant_traction_conserves_the_energy_of_an_articulated_vehicle() {
+    for (name, vehicle, road) in [
+        ("articulated", articulated(0.0, 0.0), Road::smooth()),
+        ("articulated, rough", articulated(0.0, 0.0), soft_bump()),
+        ("unsprung masses", half_car([700.0, 1100.0], 0.0, 0.0, Friction::NONE), Road::smooth()),
+    ] {
+        let drifts: Vec<f64> = (1..5)
+            .map(|halvings| {
+                let per_metre = 20 << halvings;
+                let step = 1.0 / f64::from(per_metre) / 20.0;
+                let settings = Settings {
+                    step: Some(step),
+                    road: std::sync::Arc::new(road.clone()),
+                    ..settings(Drive::ConstantTraction)
+                };
+                let run =
+                    run(&bridge(1.0), &vehicle, &settings, 3, &undamped(), ForceSummation, &[0.5 * SPAN]).unwrap();
+                let budget = Budget::of(&run, &vehicle, &road, 0.0, true);
+                let interval = &budget.stored[26 * per_metre as usize..34 * per_metre as usize];
+                let swing = motion(&run, 0, run.outcome.history.len() - 1).last().unwrap()[1] - 20.0;
+                assert!(swing.abs() > 1e-6, "the speed does not change");
+                let potential: f64 = (largest_magnitude(&run.outcome.history.a) * run.analysis.modes.omega[0]).powi(2);
+                interval.iter().map(|e| (e - interval[0]).abs()).fold(0.0, f64::max) / potential
+            })
+            .collect();
+        let orders: Vec<f64> = drifts.windows(2).map(|w| (w[0] / w[1]).log2()).collect();
+        println!("{name}: {:.1e}, orders {orders:.3?}", drifts[0]);
+        assert!(orders.iter().all(|o| (o - ORDER).abs() <= ORDER_MARGIN), "{name}: {orders:?}");
+    }
+}
+
+fn braking(deceleration: f64, from: f64, ramp: f64, adhesion: f64) -> Drive {
+    Drive::Braking(Braking { deceleration, from, ramp, adhesion })
+}
+
+/// m v̇ = Σ H − Σ B at every instant, H and B from the loads.
+#[test]
+fn braking_changes_the_momentum() {
+    for (adhesion, locks) in [(0.8, false), (0.2, true)] {
+        let (deceleration, from, ramp) = (4.0, -6.0, 0.4);
+        let vehicle = articulated(1.0, 1.0);
+        let settings = settings(braking(deceleration, from, ramp, adhesion));
+        let run = crossed(&bridge(1.0), &vehicle, &Settings { step: Some(5e-4), ..settings });
+        let shapes = problems::mechanics::Shapes::new(&run.bridge, 3);
+        let history = &run.outcome.history;
+        let (weight, begins) = (vehicle.mass() * GRAVITY, (APPROACH + from) / 20.0);
+        let (mut worst, mut slipping, mut pushed) = (0.0_f64, 0, 0.0_f64);
+        for (i, row) in run.rows().enumerate() {
+            // Where it stands nothing moves it, and the end of the last step is cut.
+            if history.vehicles[0].stopped.is_some_and(|stopped| row.time >= stopped) || i + 1 == history.len() {
+                break;
+            }
+            let level = ((row.time - begins) / ramp).clamp(0.0, 1.0);
+            let mut force = 0.0;
+            for k in 0..history.axles {
+                let slope: f64 = shapes.at(row.positions[k]).iter().zip(row.a).map(|(shape, a)| shape[1] * a).sum();
+                let asked = level * deceleration * history.static_loads[k] / GRAVITY;
+                let bound = adhesion * row.loads[k];
+                slipping += usize::from(bound < asked);
+                force += row.loads[k] * slope - asked.min(bound);
+                pushed = pushed.max((row.loads[k] * slope).abs());
+            }
+            let acceleration = motion(&run, 0, i).last().unwrap()[2];
+            worst = worst.max((vehicle.mass() * acceleration - force).abs());
+        }
+        println!("adhesion {adhesion}: {:.1e}, slope up to {:.1e}", worst / weight, pushed / weight);
+        // The brakes start within a step: their level is told to no better than the rounding of the path.
+        assert!(worst <= 1e-6 * weight, "{worst} N");
+        assert_eq!(slipping > 0, locks);
+    }
+}
+
+/// By hand: the body's mass at its height, over the wheelbase; unsprung masses slow down at road level.
+#[test]
+fn load_transfer() {
+    let vehicle = half_car([700.0, 1100.0], 2.0, 1.0, Friction::NONE);
+    let transfer = 16_200.0 * 1.4 / 4.75;
+    let along = |drive: Drive| {
+        let settings = Settings { approach: 160.0, beta: 0.25, step: Some(1e-3), ..settings(drive) };
+        crossed(&bridge(1e6), &vehicle, &settings)
+    };
+    for (name, drive) in [
+        ("brakes", braking(1.0, -150.0, 0.3, 0.8)),
+        ("prescribed", Drive::Acceleration(-1.0)),
+        ("faster", Drive::Acceleration(1.0)),
+    ] {
+        let run = along(drive.clone());
+        let sign = if name == "faster" { -1.0 } else { 1.0 };
+        // Before it comes to the bridge, and on it.
+        for at in [-2.0, 10.0] {
+            let Some(row) = run.rows().find(|row| row.positions[0] >= at) else { panic!("{name} stops before {at}") };
+            for (k, side) in [1.0, -1.0].into_iter().enumerate() {
+                let change = row.loads[k] - run.outcome.history.static_loads[k];
+                println!("{name}, {at} m: axle {k} {change:.3} N, by hand {:.3} N", sign * side * transfer);
+                assert!((change - sign * side * transfer).abs() <= LEFT * transfer, "{name}: {change} N");
+            }
+        }
+    }
+}
+
+#[test]
+fn stopping_distance() {
+    let vehicle = half_car([700.0, 1100.0], 1.0, 1.0, Friction::NONE);
+    let (deceleration, from, ramp, speed) = (4.0, -45.0, 0.5, 20.0);
+    let settings =
+        Settings { approach: 50.0, beta: 0.25, step: Some(1e-3), ..settings(braking(deceleration, from, ramp, 0.9)) };
+    let run = crossed(&bridge(1e6), &vehicle, &settings);
+    let slower: f64 = speed - 0.5 * deceleration * ramp;
+    let distance = speed * ramp - deceleration * ramp * ramp / 6.0 + slower * slower / (2.0 * deceleration);
+    let time = (50.0 + from) / speed + ramp + slower / deceleration;
+    let history = &run.outcome.history;
+    let last = history.len() - 1;
+    let [x, v, _] = *motion(&run, 0, last).last().unwrap();
+    let stopped = history.vehicles[0].stopped.unwrap();
+    let came = x + vehicle.positions()[0] - from;
+    println!("{came:.5} m, by hand {distance:.5} m; after {stopped:.4} s, by hand {time:.4} s");
+    assert!(v == 0.0 && (came - distance).abs() <= 1e-4 * distance, "{came} m");
+    assert!((stopped - time).abs() <= 2.0 * history.step, "{stopped} s");
+}
+
+/// What has come to rest stands in the static state.
+#[test]
+fn a_vehicle_that_stops_on_the_bridge() {
+    let vehicle = half_car([700.0, 1100.0], 2.0, 1.0, Friction::NONE);
+    for direction in [Direction::Right, Direction::Left] {
+        for (name, drive) in [
+            ("brakes", braking(4.0, -45.0, 0.5, 0.9)),
+            ("prescribed", Drive::Acceleration(-200.0 / 60.0)),
+            ("history", Drive::Speeds { times: vec![1.0, 3.0, 4.0], speeds: vec![20.0, 18.0, 0.0] }),
+        ] {
+            let approach = if name == "history" { 58.0 } else { 50.0 };
+            let settings = Settings { approach, tail: 40.0, step: Some(2e-3), ..settings(drive) };
+            let passage = Passage { direction, ..Passage::of(vehicle.clone()) };
+            let damping = Damping::Ratios(vec![0.05]);
+            let sections = [0.3 * SPAN, 0.5 * SPAN];
+            let run = run_all(&bridge(1.0), &[passage], &settings, 3, &damping, ForceSummation, &sections).unwrap();
+            let history = &run.outcome.history;
+            assert!(history.vehicles[0].stopped.is_some(), "{name}");
+            let last = run.rows().last().unwrap();
+            assert!(last.positions.iter().all(|&x| x > 0.0 && x < SPAN), "{name}: {:?}", last.positions);
+            let apart = largest_difference(last.dynamic, last.at_rest) / largest_magnitude(last.at_rest);
+            let loads = largest_difference(last.loads, &history.static_loads) / history.static_loads[0];
+            let deflection = run.analysis.responses.range(Quantity::Deflection).start;
+            println!("{name}, {direction:?}: {apart:.1e}, loads {loads:.1e}, {:.2e} m", last.dynamic[deflection]);
+            assert!(apart <= 1e-6 && loads <= 1e-6, "{name}: {apart:e}, {loads:e}");
+        }
+    }
+}
+
+#[test]
+fn prescribed_motion_is_exact() {
+    let vehicle = half_car([700.0, 1100.0], 1.0, 1.0, Friction::NONE);
+    let accelerated = |t: f64| -APPROACH + 20.0 * t - 1.25 * t * t;
+    // 20 m/s to 1 s, down to 10 m/s at 1.5 s, up to 16 m/s at 2.5 s, and so on.
+    let through = |t: f64| {
+        let (first, second, third) = (t.min(1.0), (t - 1.0).clamp(0.0, 0.5), (t - 1.5).clamp(0.0, 1.0));
+        let area = 20.0 * first + 20.0 * second - 10.0 * second * second + 10.0 * third + 3.0 * third * third;
+        -APPROACH + area + 16.0 * (t - 2.5).max(0.0)
+    };
+    let speeds = Drive::Speeds { times: vec![1.0, 1.5, 2.5], speeds: vec![20.0, 10.0, 16.0] };
+    let ways: [(Drive, &dyn Fn(f64) -> f64); 2] = [(Drive::Acceleration(-2.5), &accelerated), (speeds, &through)];
+    for (drive, way) in ways {
+        let run = crossed(&bridge(1.0), &vehicle, &settings(drive));
+        for row in run.rows() {
+            assert!((row.positions[0] - way(row.time)).abs() <= ROUNDING, "{} s: {:?}", row.time, row.positions);
+            assert!((row.positions[0] - row.positions[1] - 4.75).abs() <= ROUNDING);
+        }
+        let last = run.rows().last().unwrap().positions[1];
+        assert!((last - SPAN).abs() <= ROUNDING, "ends at {last} m");
+    }
+}
