@@ -199,8 +199,11 @@ impl<L: Lane> Geometry<L> for Prescribed<'_> {
         Coordinate { x: L::splat(x), v: L::splat(v), a: L::splat(a) }
     }
 
-    fn shape(&self, contact: usize, mode: usize) -> L {
-        L::splat(self.table[self.entry(contact, mode)])
+    fn shapes(&self, contact: usize, shapes: &mut [L]) {
+        let table = self.table[self.entry(contact, 0)..].iter().step_by(self.kinds);
+        for (shape, &value) in shapes.iter_mut().zip(table) {
+            *shape = L::splat(value);
+        }
     }
 
     fn slope(&self, contact: usize, mode: usize) -> L {
@@ -311,8 +314,10 @@ impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Geometry<f64> for Free<'_, 
         self.motions[contact]
     }
 
-    fn shape(&self, contact: usize, mode: usize) -> f64 {
-        self.values[contact * self.ground.shapes.modes + mode][0]
+    fn shapes(&self, contact: usize, shapes: &mut [f64]) {
+        for (shape, value) in shapes.iter_mut().zip(&self.values[contact * self.ground.shapes.modes..]) {
+            *shape = value[0];
+        }
     }
 
     fn slope(&self, contact: usize, mode: usize) -> f64 {

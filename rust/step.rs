@@ -49,8 +49,8 @@ pub trait Geometry<L: Lane> {
     /// Position from the left end of the bridge, speed and acceleration along it.
     fn motion(&self, contact: usize) -> Coordinate<L>;
 
-    /// Φ⁰: the mode's deflection under the contact [kg^-½], zero off the bridge.
-    fn shape(&self, contact: usize, mode: usize) -> L;
+    /// Φ⁰: the modes' deflections under the contact [kg^-½], zero off the bridge.
+    fn shapes(&self, contact: usize, shapes: &mut [L]);
 
     /// Slope of the mode under the contact [kg^-½/m].
     fn slope(&self, contact: usize, mode: usize) -> L;
@@ -405,9 +405,7 @@ impl<L: Lane> Stepper<L> {
         let (modes, n) = (self.omega2.len(), self.elements.len());
         let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
         for (k, shapes) in self.shapes.chunks_exact_mut(modes).enumerate() {
-            for (m, shape) in shapes.iter_mut().enumerate() {
-                *shape = geometry.shape(k, m);
-            }
+            geometry.shapes(k, shapes);
         }
         self.loaded.copy_from_slice(&self.free);
         let receptances = self.receptance.chunks_exact_mut(modes);
