@@ -43,15 +43,20 @@ fn crossed(bridge: &Bridge, vehicle: &Vehicle, settings: &Settings) -> Run {
     run(bridge, vehicle, settings, 3, &damping(), ForceSummation, &[0.5 * SPAN]).unwrap()
 }
 
-/// State at a way of the front axle since the start, in steps of a tenth of a metre over 2, 4, and so on.
+/// State when the front axle has come a certain way at its first speed, in steps of some 50 mm, halved so many times.
 fn states(vehicle: &Vehicle, settings: &Settings, way: f64, halvings: std::ops::Range<u32>) -> Vec<Vec<f64>> {
+    let path = APPROACH + SPAN + vehicle.wheelbase();
+    let acceleration = if let Drive::Acceleration(a) = settings.drive { a } else { 0.0 };
+    let speed = settings.speed;
+    let duration = 2.0 * path / (speed + (speed * speed + 2.0 * acceleration * path).sqrt());
+    let steps = (duration * speed / 0.05).round();
+    let row = (way / speed / (duration / steps)).round() as usize;
     let of = |halvings: u32| {
-        let step = 0.05 / f64::from(1 << halvings) / settings.speed;
-        // A path of so many steps; beyond the bridge the tail fills the last one up.
+        let step = duration / steps / f64::from(1 << halvings);
         let run = crossed(&bridge(1.0), vehicle, &Settings { step: Some(step), ..settings.clone() });
         let history = &run.outcome.history;
-        let row = (way / settings.speed / history.step).round() as usize;
-        assert!((history.time[row] * settings.speed - way).abs() < ROUNDING, "not the fixed time");
+        let row = row << halvings;
+        assert!((history.time[row] - row as f64 * step).abs() < ROUNDING, "not the fixed time");
         state(&run, row, true)
     };
     halvings.map(of).collect()
