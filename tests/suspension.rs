@@ -144,3 +144,39 @@ fn a_step_in_the_road() {
         assert!(errors[2] <= 5e-3, "damper {damper}: {errors:?}");
     }
 }
+
+/// Whatever the stroke, a leaf spring gives back no more than it has taken in; one that would is refused.
+#[test]
+fn leaf_springs_take_energy() {
+    use spanwise::friction::{Law, Stroke};
+    let (limit, spring) = (4e3, 8e5);
+    let longest = limit / spring;
+    for decay in [0.1 * longest, 0.5 * longest, longest] {
+        let law = Law::<f64>::new(&leaf(limit, decay), spring);
+        let mut stroke = Stroke { shortening: 0.0, rate: 0.0, friction: 0.0 };
+        // Loops of any amplitude, each gone through until it closes.
+        for amplitude in [0.1, 0.5, 2.0, 8.0].map(|decays| decays * decay) {
+            let mut work = 0.0;
+            for i in 1..=4000 {
+                let to = amplitude * (std::f64::consts::TAU * f64::from(i) / 400.0).sin();
+                let (shortening, friction) = law.meet(1e14 * to, 1e14, &stroke);
+                if i > 3600 {
+                    work += 0.5 * (friction + stroke.friction) * (shortening - stroke.shortening);
+                }
+                assert!(friction.abs() <= limit * (1.0 + ROUNDING));
+                stroke = Stroke { shortening, rate: 0.0, friction };
+            }
+            println!("decay {decay:.1e} m, amplitude {amplitude:.1e} m: {:.3} of F a", work / (limit * amplitude));
+            assert!(work >= -1e-3 * limit * amplitude, "{work} J");
+        }
+    }
+    let with = |decay: f64, limit: f64| {
+        let axle = Axle { friction: leaf(limit, decay), ..Axle::new(0.0, TYRE, SPRING) };
+        Vehicle::new(MASS, 1.0, 0.0, vec![axle])
+    };
+    with(3e3 / SPRING, 3e3).unwrap();
+    for limit in [3e3, 0.0] {
+        let refused = with(1.01 * 3e3 / SPRING, limit).unwrap_err();
+        assert!(refused.is_input() && refused.to_string().contains("leaf_decay"), "{refused}");
+    }
+}
