@@ -153,9 +153,10 @@ fn vehicles_overlap_only_on_their_way() {
 fn roads_under_late_vehicles() {
     let road: std::sync::Arc<Road> = std::sync::Arc::new(profile([-25.0, 50.0], |x| 0.002 * (0.8 * x).sin()));
     let late = Passage { entry: 2.0, ..Passage::of(truck()) };
-    let refused = crossed(&[late.clone()], &Settings { road: road.clone(), ..settings() }).map(|_| ()).unwrap_err();
+    let refused =
+        crossed(std::slice::from_ref(&late), &Settings { road: road.clone(), ..settings() }).map(|_| ()).unwrap_err();
     assert!(refused.to_string().contains("-59.75 m"), "{refused}");
-    crossed(&[late.clone()], &Settings { road: road.clone(), ramp: 5.0, ..settings() }).unwrap();
+    crossed(std::slice::from_ref(&late), &Settings { road: road.clone(), ramp: 5.0, ..settings() }).unwrap();
     crossed(&[Passage { entry: 0.0, ..late }], &Settings { road, ..settings() }).unwrap();
 }
 
