@@ -261,7 +261,7 @@ fn check_body(bodies: &[Body], b: usize) -> Result<(), Error> {
         not_negative(key("tyre_damping"), axle.tyre_damping)?;
         positive(key("suspension_stiffness"), axle.suspension_stiffness)?;
         not_negative(key("suspension_damping"), axle.suspension_damping)?;
-        check_friction(&axle.friction, &key)?;
+        check_friction(&axle.friction, axle.suspension_stiffness, &key)?;
         if let (BuildUp::Elastic(stiffness), 0.0) = (axle.friction.build_up, axle.mass) {
             let allowed = "not for a massless axle, whose friction holds it rigidly; give it a mass, or leaf_decay";
             return Err(Error::input(key("stick_stiffness"), format!("{stiffness} N/m"), allowed));
@@ -271,7 +271,7 @@ fn check_body(bodies: &[Body], b: usize) -> Result<(), Error> {
     check_couplings(bodies, b)
 }
 
-fn check_friction(friction: &Friction, key: &dyn Fn(&str) -> String) -> Result<(), Error> {
+fn check_friction(friction: &Friction, spring: f64, key: &dyn Fn(&str) -> String) -> Result<(), Error> {
     let limit = friction.limit;
     if limit.is_nan() || limit < 0.0 {
         let allowed = "must be 0 or more (inf for a locked suspension)";
@@ -295,6 +295,15 @@ fn check_friction(friction: &Friction, key: &dyn Fn(&str) -> String) -> Result<(
             if limit.is_infinite() {
                 let allowed = "must be finite with leaf_decay, by which friction goes towards it";
                 return Err(Error::input(key("friction_limit"), limit, allowed));
+            }
+            // On a long stroke the force lags kβ behind the envelope, which is F off the spring: more would drive it.
+            let longest = limit / spring;
+            if stroke > longest * (1.0 + 1e-12) {
+                let allowed = format!(
+                    "must be at most friction_limit over the stiffness of the spring, {longest} m: a longer one would \
+                     make the spring give out energy"
+                );
+                return Err(Error::input(key("leaf_decay"), format!("{stroke} m"), allowed));
             }
         }
     }
@@ -338,7 +347,7 @@ fn check_couplings(bodies: &[Body], b: usize) -> Result<(), Error> {
             Coupling::Spring { stiffness, damping, friction, .. } => {
                 positive(key("stiffness"), *stiffness)?;
                 not_negative(key("damping"), *damping)?;
-                check_friction(friction, &key)?;
+                check_friction(friction, *stiffness, &key)?;
             }
         }
     }

@@ -160,7 +160,7 @@ fn energy_is_accounted_for() {
 /// A truck like the HS20-44 on a poor road at 90 km/h.
 #[test]
 fn lift_offs_are_told() {
-    let vehicle = hs20();
+    let vehicle = hs20(1.0);
     let run = crossed(&vehicle, &settings(25.0, &road(Class::D, BAND, 1), Some(2e-4))).unwrap();
     let history = &run.outcome.history;
     let told = history.lift_offs();

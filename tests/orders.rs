@@ -3,7 +3,7 @@
 mod problems;
 
 use problems::mechanics::{Budget, motion, orders, profile, run_all, state};
-use problems::vehicles::{articulated, elastic, half_car};
+use problems::vehicles::{articulated, elastic, half_car, hs20};
 use problems::*;
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Stations};
@@ -43,15 +43,20 @@ fn crossed(bridge: &Bridge, vehicle: &Vehicle, settings: &Settings) -> Run {
     run(bridge, vehicle, settings, 3, &damping(), ForceSummation, &[0.5 * SPAN]).unwrap()
 }
 
-/// State at a way of the front axle since the start, in steps of a tenth of a metre over 2, 4, and so on.
+/// State when the front axle has come a certain way at its first speed, in steps of some 50 mm, halved so many times.
 fn states(vehicle: &Vehicle, settings: &Settings, way: f64, halvings: std::ops::Range<u32>) -> Vec<Vec<f64>> {
+    let path = APPROACH + SPAN + vehicle.wheelbase();
+    let acceleration = if let Drive::Acceleration(a) = settings.drive { a } else { 0.0 };
+    let speed = settings.speed;
+    let duration = 2.0 * path / (speed + (speed * speed + 2.0 * acceleration * path).sqrt());
+    let steps = (duration * speed / 0.05).round();
+    let row = (way / speed / (duration / steps)).round() as usize;
     let of = |halvings: u32| {
-        let step = 0.05 / f64::from(1 << halvings) / settings.speed;
-        // A path of so many steps; beyond the bridge the tail fills the last one up.
+        let step = duration / steps / f64::from(1 << halvings);
         let run = crossed(&bridge(1.0), vehicle, &Settings { step: Some(step), ..settings.clone() });
         let history = &run.outcome.history;
-        let row = (way / settings.speed / history.step).round() as usize;
-        assert!((history.time[row] * settings.speed - way).abs() < ROUNDING, "not the fixed time");
+        let row = row << halvings;
+        assert!((history.time[row] - row as f64 * step).abs() < ROUNDING, "not the fixed time");
         state(&run, row, true)
     };
     halvings.map(of).collect()
@@ -68,10 +73,14 @@ fn settings(drive: Drive) -> Settings {
     Settings { drive, approach: APPROACH, ..Settings::at_speed(20.0) }
 }
 
-fn soft_bump() -> Road {
+/// Two humps of 4 mm, one on the approach, under the front axle from the start, and one on the bridge.
+fn humps() -> Road {
     profile([-60.0, 60.0], |x| {
-        let t = (x + 9.0) / 6.0;
-        if t.abs() < 1.0 { 0.004 * (1.0 - t * t).powi(4) } else { 0.0 }
+        let hump = |middle: f64| {
+            let t = (x - middle) / 6.0;
+            if t.abs() < 1.0 { 0.004 * (1.0 - t * t).powi(4) } else { 0.0 }
+        };
+        hump(-9.0) + hump(11.0)
     })
 }
 
@@ -97,7 +106,7 @@ fn tyre_damping_is_of_second_order_until_the_second_axle_enters() {
 /// Without dampers in the tyres the forces follow displacements alone, and axles may come and go.
 #[test]
 fn general_vehicles_are_of_second_order() {
-    let bump = std::sync::Arc::new(soft_bump());
+    let bump = std::sync::Arc::new(humps());
     for (name, vehicle) in [
         ("unsprung masses", half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE)),
         ("articulated", articulated(0.5, 0.0)),
@@ -116,7 +125,7 @@ fn general_vehicles_are_of_second_order() {
 /// On the approach tyre damping costs no order on a road with a continuous slope, on which the front axle begins.
 #[test]
 fn tyre_damping_on_a_bump_is_of_second_order() {
-    let road = std::sync::Arc::new(soft_bump());
+    let road = std::sync::Arc::new(humps());
     for vehicle in [half_car([700.0, 1100.0], 1.0, 5.0, Friction::NONE), articulated(0.5, 2.0)] {
         for drive in [Drive::ConstantSpeed, Drive::ConstantTraction, Drive::Acceleration(-3.0)] {
             let settings = Settings { road: road.clone(), ..settings(drive.clone()) };
@@ -130,8 +139,8 @@ fn tyre_damping_on_a_bump_is_of_second_order() {
 /// Wheels in the air and friction that gives way: kinks within steps, but nothing worse.
 #[test]
 fn lift_off_and_sliding_are_of_first_order_at_least() {
-    let high = std::sync::Arc::new(profile([-60.0, 60.0], |x| 30.0 * soft_bump().at(x).elevation));
-    let low = std::sync::Arc::new(soft_bump());
+    let high = std::sync::Arc::new(profile([-60.0, 60.0], |x| 30.0 * humps().at(x).elevation));
+    let low = std::sync::Arc::new(humps());
     for (name, vehicle, road, flies) in [
         ("lift-off", half_car([700.0, 1100.0], 0.5, 0.0, Friction::NONE), &high, true),
         ("sliding", half_car([700.0, 1100.0], 0.5, 0.0, elastic(2e3, 2e7)), &low, false),
@@ -156,7 +165,7 @@ fn lift_off_and_sliding_are_of_first_order_at_least() {
 fn constant_traction_conserves_the_energy_of_an_articulated_vehicle() {
     for (name, vehicle, road) in [
         ("articulated", articulated(0.0, 0.0), Road::smooth()),
-        ("articulated, rough", articulated(0.0, 0.0), soft_bump()),
+        ("articulated, rough", articulated(0.0, 0.0), humps()),
         ("unsprung masses", half_car([700.0, 1100.0], 0.0, 0.0, Friction::NONE), Road::smooth()),
     ] {
         let drifts: Vec<f64> = (1..5)
@@ -323,4 +332,89 @@ fn prescribed_motion_is_exact() {
         let last = run.rows().last().unwrap().positions[1];
         assert!((last - SPAN).abs() <= ROUNDING, "ends at {last} m");
     }
+}
+
+/// Through the hinge: the semitrailer leans on the tractor at the height of the fifth wheel.
+#[test]
+fn load_transfer_through_a_hinge() {
+    let vehicle = hs20(5.0);
+    let [tractor, trailer] = [&vehicle.bodies()[0], &vehicle.bodies()[1]];
+    let (deceleration, hinge) = (1.0, 1.2);
+    let shares = vehicle.static_loads(1.0);
+    // Moments about the hinge of what is behind it, and of everything about the road below it; masses at road level and
+    // brake forces there have no lever about the latter.
+    let axle = vehicle.axles()[2];
+    let lever = 2.338 + 2.283;
+    let last = -((trailer.cg_height - hinge) * trailer.mass + hinge * (shares[2] - axle.mass)) * deceleration / lever;
+    let rocking = (tractor.cg_height * tractor.mass + trailer.cg_height * trailer.mass) * deceleration;
+    let (front, middle) = (1.698 + 2.215, -2.569 + 2.215);
+    // P₁ + P₂ = −P₃ and P₁ x₁ + P₂ x₂ = rocking + P₃ · lever.
+    let first = (rocking + last * lever + last * middle) / (front - middle);
+    let by_hand = [first, -last - first, last];
+    for drive in [Drive::Acceleration(-deceleration), braking(deceleration, -160.0, 0.3, 0.8)] {
+        let settings = Settings { approach: 170.0, beta: 0.25, step: Some(1e-3), ..settings(drive.clone()) };
+        let run = crossed(&bridge(1e6), &vehicle, &settings);
+        let row = run.rows().find(|row| row.positions[0] >= 10.0).unwrap();
+        for k in 0..3 {
+            let change = row.loads[k] - run.outcome.history.static_loads[k];
+            println!("axle {k}: {change:.3} N, by hand {:.3} N", by_hand[k]);
+            assert!((change - by_hand[k]).abs() <= LEFT * by_hand[0], "{drive:?}, axle {k}: {change} N");
+        }
+    }
+}
+
+/// A vehicle that begins on a slope rolls down it from the first instant.
+#[test]
+fn the_first_instant_on_a_slope() {
+    let vehicle = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
+    let road = humps();
+    for direction in [Direction::Right, Direction::Left] {
+        let road = match direction {
+            Direction::Right => road.clone(),
+            Direction::Left => profile([-40.0, 80.0], |x| humps().at(SPAN - x).elevation),
+        };
+        let settings = Settings { road: std::sync::Arc::new(road.clone()), ..settings(Drive::ConstantTraction) };
+        let passage = Passage { direction, ..Passage::of(vehicle.clone()) };
+        let run = run_all(&bridge(1.0), &[passage], &settings, 3, &damping(), ForceSummation, &[0.5 * SPAN]).unwrap();
+        let row = run.rows().next().unwrap();
+        let pushed: f64 =
+            (0..2).map(|k| -direction.sign() * row.loads[k] * road.at(row.positions[k]).slope).sum::<f64>();
+        let all = motion(&run, 0, 0);
+        println!("{direction:?}: {:.3e} m/s², by hand {:.3e}", all[4][2], pushed / vehicle.mass());
+        assert!((vehicle.mass() * all[4][2] - pushed).abs() <= ROUNDING * pushed.abs() && pushed < -1.0);
+        // And it pitches: J θ̈ = −h Σ H of the body, the springs still at rest.
+        let body = 1.4 * 16_200.0 / vehicle.mass();
+        let inertia = 93_457.0 + 1.4 * 1.4 * 16_200.0 * 1800.0 / vehicle.mass();
+        assert!((inertia * all[1][2] + body * pushed).abs() <= ROUNDING * pushed.abs(), "{}", all[1][2]);
+    }
+}
+
+/// Once it stands, a vehicle rocks about its wheels, and nothing is lost.
+#[test]
+fn rocking_about_standing_wheels() {
+    let vehicle = half_car([700.0, 1100.0], 0.0, 0.0, Friction::NONE);
+    let drifts: Vec<f64> = [2e-3, 1e-3, 5e-4]
+        .into_iter()
+        .map(|step| {
+            let drive = braking(4.0, -45.0, 0.5, 0.9);
+            let settings = Settings { approach: 50.0, tail: 3.0, step: Some(step), ..settings(drive) };
+            let run = run(&bridge(1.0), &vehicle, &settings, 3, &undamped(), ForceSummation, &[0.5 * SPAN]).unwrap();
+            let history = &run.outcome.history;
+            let mut stored = Budget::of(&run, &vehicle, &Road::smooth(), 0.0, true).stored;
+            let standing = vehicle.assembly().standing_mass();
+            let first = history.time.iter().position(|&t| t >= history.vehicles[0].stopped.unwrap()).unwrap() + 1;
+            let mut rocking = 0.0_f64;
+            for (i, stored) in stored.iter_mut().enumerate() {
+                let q = nalgebra::DVector::from_iterator(4, motion(&run, 0, i)[..4].iter().map(|c| c[1]));
+                *stored += 0.5 * (&standing * &q).dot(&q);
+                if i >= first {
+                    rocking = rocking.max(0.5 * (&vehicle.assembly().mass * &q).dot(&q));
+                }
+            }
+            let last = history.len() - 1;
+            stored[first..last].iter().map(|e| (e - stored[first]).abs()).fold(0.0, f64::max) / rocking
+        })
+        .collect();
+    println!("{drifts:?}");
+    assert!(drifts[2] <= 2e-3 && drifts.windows(2).all(|w| w[1] < 0.35 * w[0]), "{drifts:?}");
 }

@@ -48,12 +48,13 @@ pub fn articulated(suspension_damping: f64, tyre_damping: f64) -> Vehicle {
         .unwrap()
 }
 
-/// Tractor and semitrailer of three axles like the HS20-44 truck of X. Shi and C. S. Cai, for the whole width.
-pub fn hs20() -> Vehicle {
+/// Tractor and semitrailer of three axles like the HS20-44 truck of X. Shi and C. S. Cai, for the whole width, with
+/// suspension dampers as multiples of the usual ones.
+pub fn hs20(suspension_damping: f64) -> Vehicle {
     let axle = |position: f64, wheels: f64, spring: f64, damper: f64, tyre: f64| Axle {
         mass: 2.0 * wheels,
         tyre_damping: 2.0 * 2000.0,
-        suspension_damping: 2.0 * damper,
+        suspension_damping: 2.0 * damper * suspension_damping,
         ..Axle::new(position, 2.0 * tyre, 2.0 * spring)
     };
     let front =
