@@ -114,7 +114,7 @@ def print_bridge(bridge: sw.Bridge) -> None:
     print("printed   " + "".join(f"{r:8.4g}" for r in PRINTED_REACTION))
 
 
-def print_frequencies(bridge: sw.Bridge, vehicle: sw.Vehicle) -> None:
+def print_frequencies(bridge: sw.Bridge, vehicle: sw.vehicles.AnyVehicle) -> None:
     """Natural frequencies of the bridge and of the vehicle on rigid ground."""
     heading("Natural frequencies [Hz]")
 

@@ -256,11 +256,17 @@ NO_NUMBERS = ["2.0", "abc", None, True, 1j, b"2", {"a": 1}, {2.0}, np.array([1j]
         (front_axle, "suspension_stiffness"),
         (front_axle, "friction_limit"),
         (front_axle, "initial_friction"),
-        *((cross, key) for key in ("speed", "approach", "tail", "beta", "gravity", "mask")),
+        *((cross, key) for key in ("speed", "approach", "ramp", "tail", "beta", "gravity", "mask")),
         (cross, "damping"),
     ],
 )
 def test_numbers_must_be_numbers(make: Callable[..., object], key: str, bad: object) -> None:
+    if bad is None and key in ("approach", "ramp"):
+        return  # they have defaults
+    if bad is None and key == "speed":
+        with pytest.raises(ValueError, match="speed: missing; give it here or with every passage"):
+            cross(speed=None)
+        return
     with pytest.raises(ValueError, match=rf"{key}(\[0\])? = .*must be a number"):
         make(**{key: bad})
 

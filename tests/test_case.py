@@ -88,6 +88,7 @@ def test_a_vehicle_of_its_own() -> None:
 def test_a_preset_can_be_changed() -> None:
     changes = "initial_friction = [1000.0, -1000]\nmass = 30e3\n"
     vehicle = sw.Case.parse(BRIDGE + VEHICLE + changes + CROSSING).vehicle
+    assert isinstance(vehicle, sw.Vehicle)
     assert [axle.initial_friction for axle in vehicle.axles] == [1000.0, -1000.0]
     assert vehicle.mass == 30e3
     assert vehicle.pitch_inertia == sw.vehicles.kishan_1973().pitch_inertia
@@ -116,15 +117,18 @@ def test_every_argument_is_a_key() -> None:
         "drive": '"constant-traction"',
         "damping": "[0.01, 0.02]",
         "approach": "5.0",
+        "ramp": "2.0",
         "tail": "0.1",
         "sections": "[9.0, 18.0]",
         "recovery": '"superposition"',
         "step": "0.001",
         "beta": "0.25",
         "gravity": "9.8",
+        "lift_off": "false",
         "mask": "0.1",
     }
     arguments = list(inspect.signature(sw.cross).parameters)[2:]
+    arguments.remove("road")  # has a table of its own
     assert list(given) == arguments
     text = "[crossing]\n" + "\n".join(f"{key} = {value}" for key, value in given.items())
     run = sw.Case.parse(BRIDGE + VEHICLE + text).run()
@@ -147,7 +151,7 @@ def test_a_byte_order_mark_does_no_harm(tmp_path: Path) -> None:
     assert sw.Case.read(str(path)).crossing["modes"] == 3
 
 
-KNOWN = r"allowed: \[bridge\], \[vehicle\], \[crossing\]"
+KNOWN = r"allowed: \[bridge\], \[vehicle\], \[\[traffic\]\], \[road\], \[crossing\]"
 REFUSED = [
     # Tables
     ("", r"case: missing \[bridge\], \[vehicle\], \[crossing\]"),
@@ -177,13 +181,16 @@ REFUSED = [
     # Vehicle
     (
         BRIDGE + VEHICLE.replace("-1973", "1973") + CROSSING,
-        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973 \(did you mean 'kishan-1973'\?\)",
+        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973, .* \(did you mean 'kishan-1973'\?\)",
     ),
     (BRIDGE + "[vehicle]\npreset = 3" + CROSSING, r"preset = 3: must be one of kishan-1973"),
     (BRIDGE + "[vehicle]\npreset = []" + CROSSING, r"preset = \[\]: must be one of"),
     (BRIDGE + "[vehicle]\nprest = 'a'" + CROSSING, r"'prest' \(did you mean 'preset'\?\)"),
-    (BRIDGE + "[vehicle]" + CROSSING, r"missing mass, pitch_inertia, axles; or name a preset: kis"),
-    (BRIDGE + VEHICLE + "axles = []" + CROSSING, r"'axles' \(not beside a preset\)"),
+    (
+        BRIDGE + "[vehicle]" + CROSSING,
+        r"missing mass, pitch_inertia, axles; or bodies, loads or masses; or name a preset: kis",
+    ),
+    (BRIDGE + VEHICLE + "axles = []" + CROSSING, r"'axles' \(not beside this preset\)"),
     (
         BRIDGE + VEHICLE + "initial_friction = [1.0]" + CROSSING,
         r"initial_friction = \(1\.0,\): give one force for each of the 2 axles",
@@ -213,14 +220,16 @@ REFUSED = [
         r"'friction_limit' \(belongs in each \[\[vehicle\.axles\]\]\)",
     ),
     # Crossing
-    (BRIDGE + VEHICLE + "[crossing]", r"case, \[crossing\]: missing speed"),
     (
         BRIDGE + VEHICLE + CROSSING + "sped = 1",
         r"'sped' \(did you mean 'speed'\?\); allowed: speed,",
     ),
     (BRIDGE + VEHICLE + CROSSING + "DRIVE = 1", r"'DRIVE' \(did you mean 'drive'\?\)"),
     (BRIDGE + VEHICLE + CROSSING + "EI = 1", r"unknown key 'EI' \(belongs in \[bridge\]\)"),
-    (BRIDGE + VEHICLE + CROSSING + "bridge = 1", r"unknown key 'bridge'; allowed: speed"),
+    (
+        BRIDGE + VEHICLE + CROSSING + "bridge = 1",
+        r"'bridge' \(a table of its own, \[bridge\]\); allowed: s",
+    ),
     # TOML
     (BRIDGE + "mass = 3", r"case, line 7: is not valid TOML: .*: mass = 3"),
     ("[bridge]\nEI = 3e9 N m2\n", r"case, line 2: is not valid TOML: .*: EI = 3e9 N m2"),
@@ -240,6 +249,11 @@ def test_what_cannot_be_used_is_explained(text: str, message: str) -> None:
 
 
 def test_values_are_checked_when_it_runs() -> None:
+    # Not before: every passage may have a speed of its own, or the command line gives it.
+    case = sw.Case.parse(BRIDGE + VEHICLE + "[crossing]", source="a.toml")
+    with pytest.raises(ValueError, match=r"a\.toml, \[crossing\]: speed: missing; give it here or"):
+        case.run()
+    assert case.run(speed=20.0).settings["speed"] == 20.0
     case = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + 'drive = "constant"', source="a.toml")
     with pytest.raises(ValueError, match=r'a\.toml, \[crossing\]: drive = "constant": must be'):
         case.run()

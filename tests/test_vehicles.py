@@ -98,10 +98,11 @@ def test_the_vehicle_of_1973() -> None:
     assert_allclose(limits, [4_800.0, 4_800.0], rtol=EXACT)
 
 
-def test_every_preset_is_a_vehicle() -> None:
+def test_every_preset_is_a_vehicle_or_a_train() -> None:
     assert "kishan-1973" in sw.vehicles.PRESETS
-    for make in sw.vehicles.PRESETS.values():
-        assert isinstance(make(), sw.Vehicle)
+    for name, make in sw.vehicles.PRESETS.items():
+        assert isinstance(make(), sw.Vehicle | sw.ForceTrain), name
+        assert make().static_loads().min() > 0.0, name
 
 
 def test_initial_friction_changes_nothing_else() -> None:

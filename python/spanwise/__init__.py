@@ -23,6 +23,7 @@ from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 __all__ = [
+    "ISO8608",
     "Acceleration",
     "Axle",
     "Body",
@@ -35,7 +36,6 @@ __all__ = [
     "Extremes",
     "ForceTrain",
     "Hinge",
-    "ISO8608",
     "ImpactFactors",
     "Joint",
     "LiftOff",

@@ -351,8 +351,13 @@ class Run(Responses):
     @cached_property
     def vehicles(self) -> tuple[VehicleMotion, ...]:
         """The motion of each vehicle."""
-        kinds = ("positions", "elevations", "suspension_shortenings", "friction")
-        by_axle = [self._core.states(kind) for kind in kinds]
+        by_axle = {
+            "axle_positions": self._core.states("positions"),
+            **{
+                k: self._core.states(k)
+                for k in ("elevations", "suspension_shortenings", "friction")
+            },
+        }
         motions, first = [], 0
         for number_, (passage, stopped) in enumerate(
             zip(self.passages, self._core.stopped, strict=True)
@@ -365,11 +370,14 @@ class Run(Responses):
             first += axles
             motions.append(
                 VehicleMotion(
-                    tuple(BodyMotion(*bodies[at : at + 2]) for at in range(0, len(bodies), 2)),
-                    tuple(hops),
-                    *columns[-3:],
-                    *(_frozen(np.ascontiguousarray(each[:, own])) for each in by_axle),
-                    stopped,
+                    bodies=tuple(map(BodyMotion, bodies[::2], bodies[1::2])),
+                    hops=tuple(hops),
+                    **dict(zip(("travel", "speed", "acceleration"), columns[-3:], strict=True)),
+                    **{
+                        kind: _frozen(np.ascontiguousarray(values[:, own]))
+                        for kind, values in by_axle.items()
+                    },
+                    stopped=stopped,
                 )
             )
         return tuple(motions)

@@ -47,7 +47,10 @@ class ForceTrain(Wheels):
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its fields, so that it can go to another process."""
-        return _rebuilt, (type(self), {each.name: getattr(self, each.name) for each in fields(self)})
+        return _rebuilt, (
+            type(self),
+            {each.name: getattr(self, each.name) for each in fields(self)},
+        )
 
     @property
     def plot(self) -> VehiclePlot:
@@ -89,7 +92,10 @@ class MovingMasses(Wheels):
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its fields, so that it can go to another process."""
-        return _rebuilt, (type(self), {each.name: getattr(self, each.name) for each in fields(self)})
+        return _rebuilt, (
+            type(self),
+            {each.name: getattr(self, each.name) for each in fields(self)},
+        )
 
     @property
     def plot(self) -> VehiclePlot:
@@ -118,9 +124,7 @@ def _positions(
         raise ValueError(f"spacings = {shown(spacings)}: not beside positions; give one of the two")
     gaps = numbers("spacings", spacings)
     if len(gaps) != count - 1:
-        raise ValueError(
-            f"spacings = {len(gaps)} values: must be one less than the {count} {key}"
-        )
+        raise ValueError(f"spacings = {len(gaps)} values: must be one less than the {count} {key}")
     for k, gap in enumerate(gaps):
         if not 0.0 < gap < float("inf"):
             raise ValueError(f"spacings[{k}] = {gap:g} m: must be finite and greater than 0")

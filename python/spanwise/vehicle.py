@@ -255,7 +255,9 @@ class Vehicle(Wheels):
             given["axles"] = self.axles
         for name, value in given.items():
             if value is not None:
-                raise ValueError(f"{name} = {shown(value)}: not beside bodies, which have their own")
+                raise ValueError(
+                    f"{name} = {shown(value)}: not beside bodies, which have their own"
+                )
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its fields, so that it can go to another process."""
@@ -286,9 +288,7 @@ class Vehicle(Wheels):
         parts = [[*body.axles] for body in self.parts]
         for (b, i), force in zip(self.axle_order, friction, strict=True):
             parts[b][i] = replace(parts[b][i], initial_friction=force)
-        bodies = [
-            replace(body, axles=axles) for body, axles in zip(self.parts, parts, strict=True)
-        ]
+        bodies = [replace(body, axles=axles) for body, axles in zip(self.parts, parts, strict=True)]
         return Vehicle(bodies=bodies)
 
     @property

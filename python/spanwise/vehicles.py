@@ -318,7 +318,9 @@ class Preset:
     @property
     def options(self) -> tuple[str, ...]:
         """Names of what `make` accepts."""
-        return tuple(p.name for p in signature(self.make).parameters.values() if p.kind is p.KEYWORD_ONLY)
+        return tuple(
+            p.name for p in signature(self.make).parameters.values() if p.kind is p.KEYWORD_ONLY
+        )
 
     def __call__(self, **options: Any) -> AnyVehicle:
         """The vehicle."""
@@ -340,7 +342,10 @@ PRESETS: Final[dict[str, Preset]] = {
         articulated_5_axle, "tractor and semi-trailer", "Cantero et al., ICE Bridge Eng. 162 (2009)"
     ),
     "hs20-44": Preset(
-        hs20_44, "tractor and semi-trailer", "Shi and Cai (2009), Deng and Cai (2010)", recalled=True
+        hs20_44,
+        "tractor and semi-trailer",
+        "Shi and Cai (2009), Deng and Cai (2010)",
+        recalled=True,
     ),
     "hs20": Preset(hs20, "axle loads of a code", "AASHTO HS20"),
     "t44": Preset(t44, "axle loads of a code", "NAASRA and Austroads T44", recalled=True),

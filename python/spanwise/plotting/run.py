@@ -62,7 +62,7 @@ class RunPlot:
         """
         run = self._run
         stands = _worst_position(run) if front_axle is None else number("front_axle", front_axle)
-        centre = stands - run.truck.axles[0].position
+        centre = stands - run.truck.axle_positions[0]
         ax = axes_for(ax, height=2.1)
         draw_bridge(ax, run.bridge, run.bridge.supports, above=70.0)
         at, beyond = centre + run.truck.axle_positions, overhang(run.truck)

@@ -12,7 +12,7 @@ import numpy as np
 from spanwise.plotting import symbols
 from spanwise.plotting.style import GREY, PALE, metres, new_figure, styled, whole
 from spanwise.trains import ForceTrain, MovingMasses
-from spanwise.vehicle import Axle, Spring, Vehicle
+from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,6 +81,11 @@ class _Box:
     roof: float
 
 
+def _ends(body: Body) -> list[Hinge | Spring]:
+    """What couples a body to earlier ones."""
+    return [*([] if body.hinge is None else [body.hinge]), *body.springs]
+
+
 def _levels(vehicle: Vehicle) -> list[int]:
     """How many bodies each one stands on.
 
@@ -91,7 +96,7 @@ def _levels(vehicle: Vehicle) -> list[int]:
     for _ in levels:
         for b, body in enumerate(vehicle.parts):
             at = [axle.position for axle in body.axles]
-            for end in filter(None, [body.hinge, *body.springs]):
+            for end in _ends(body):
                 below = len(at) > 0 and (min(at) <= end.own <= max(at) or isinstance(end, Spring))
                 low, high = (b, end.to) if below else (end.to, b)
                 levels[high] = max(levels[high], levels[low] + 1)
@@ -108,13 +113,8 @@ def _boxes(vehicle: Vehicle) -> list[_Box]:
     for b, (body, x, level) in enumerate(
         zip(parts, vehicle.body_positions, _levels(vehicle), strict=True)
     ):
-        own = [end.own for end in filter(None, [body.hinge, *body.springs])]
-        theirs = [
-            end.at
-            for other in parts
-            for end in filter(None, [other.hinge, *other.springs])
-            if end.to == b
-        ]
+        own = [end.own for end in _ends(body)]
+        theirs = [end.at for other in parts for end in _ends(other) if end.to == b]
         held = [0.0, *own, *theirs]
         rolling = [axle.position for axle in body.axles]
         back = min([each - 0.4 for each in held] + [each - beyond for each in rolling])
@@ -171,7 +171,7 @@ def _draw_bodies(
                 post = [(side * half, scale * FLOOR), (side * half, scale * boxes[b].floor)]
                 symbols.stroke(ax, symbols.local(ax, x), post)
     for b, body in enumerate(vehicle.parts):
-        for end in filter(None, [body.hinge, *body.springs]):
+        for end in _ends(body):
             low, high = sorted((boxes[b], boxes[end.to]), key=lambda box: box.floor)
             x = centre + boxes[b].centre + end.own
             if isinstance(end, Spring):
