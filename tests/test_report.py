@@ -45,25 +45,16 @@ def report(run: sw.Run) -> dict[str, Any]:
 
 def again(settings: dict[str, Any]) -> sw.Run:
     """The run that the settings of a report describe."""
-    vehicle = dict(settings["vehicle"])
-    axles = [
-        sw.Axle(**{**axle, "friction_limit": float(axle["friction_limit"])})
-        for axle in vehicle.pop("axles")
-    ]
-    return sw.cross(
-        sw.Bridge(**settings["bridge"]),
-        sw.Vehicle(**vehicle, axles=axles),
-        **settings["crossing"],
-    )
+    return sw.Case.from_dict(settings).run()
 
 
 def test_keys(report: dict[str, Any]) -> None:
     assert set(report) == {
         *("version", "settings", "sections", "supports", "frequencies", "final_speed", "steps"),
-        *("impact_factors", "clamp_moments", *QUANTITIES),
+        *("vehicles", "lift_offs", "impact_factors", "clamp_moments", *QUANTITIES),
     }
     assert report["version"] == sw.__version__
-    assert set(report["settings"]) == {"bridge", "vehicle", "crossing"}
+    assert set(report["settings"]) == {"bridge", "vehicle", "road", "crossing"}
     for quantity in (*QUANTITIES, "clamp_moments"):
         assert set(report[quantity]) == {
             f"{kind}{sense}{what}"
@@ -160,6 +151,7 @@ def test_csv_files(tmp_path: Path, run: sw.Run) -> None:
     quantities = [*QUANTITIES, "clamp_moments"]
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "impact_factors.csv",
+        "lift_offs.csv",
         "history_vehicle.csv",
         *(f"{kind}_{quantity}.csv" for kind in ("envelope", "history") for quantity in quantities),
     }

@@ -82,6 +82,11 @@ def is_alone(passages: tuple[Passage, ...]) -> bool:
     return len(passages) == 1 and passages[0] == Passage(vehicle=passages[0].vehicle)
 
 
+def is_random(road: Road) -> bool:
+    """Whether a seed makes a difference."""
+    return isinstance(road, ISO8608) or (isinstance(road, Sum) and any(map(is_random, road.parts)))
+
+
 def reseeded(road: Road, seed: int) -> Road:
     """The road with another seed in all its random parts."""
     if isinstance(road, ISO8608):

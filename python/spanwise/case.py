@@ -12,7 +12,7 @@ from typing import Any, Final, TypeAlias
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import shown
 from spanwise._keys import Keys, suggestion
-from spanwise._traffictable import OWN, PASSAGE, passage_of, road_in
+from spanwise._traffictable import OWN, passage_of, road_in
 from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge

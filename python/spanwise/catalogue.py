@@ -40,7 +40,8 @@ def listing() -> str:
             *lines,
             "",
             "length: from the first to the last axle; frequencies: the lowest on rigid ground",
-            "while friction holds, none of a train of forces. More of one: spanwise vehicles PRESET",
+            "while friction holds, none of a train of forces. More of one:",
+            "spanwise vehicles PRESET",
             RECALLED,
         ]
     )
