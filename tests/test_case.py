@@ -181,7 +181,7 @@ REFUSED = [
     # Vehicle
     (
         BRIDGE + VEHICLE.replace("-1973", "1973") + CROSSING,
-        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973, .* \(did you mean 'kishan-1973'\?\)",
+        r"\[vehicle\]: preset = 'kishan1973': .* of kishan-1973, .*you mean 'kishan-1973'\?\)",
     ),
     (BRIDGE + "[vehicle]\npreset = 3" + CROSSING, r"preset = 3: must be one of kishan-1973"),
     (BRIDGE + "[vehicle]\npreset = []" + CROSSING, r"preset = \[\]: must be one of"),

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spanwise.plotting import symbols
 from spanwise.plotting.style import GREY, PALE, metres, new_figure, styled, whole
@@ -55,7 +56,7 @@ class VehiclePlot:
         """
         if ax is None:
             columns, notes = _values(self._vehicle)
-            drawing = 2.9 + (_top(self._vehicle) - ROOF) / 72.0
+            drawing = 2.9 + (top(self._vehicle) - ROOF) / 72.0
             table = LINE * (len(columns) + len(notes))
             figure = new_figure(drawing + table)
             ax, below = figure.subplots(2, 1, height_ratios=[drawing, table])
@@ -124,33 +125,38 @@ def _boxes(vehicle: Vehicle) -> list[_Box]:
     return boxes
 
 
-def _top(vehicle: AnyVehicle) -> float:
+def top(vehicle: AnyVehicle) -> float:
     """Height of all there is above the road [points]."""
     if not isinstance(vehicle, Vehicle):
         return AXLE
     return max(box.roof for box in _boxes(vehicle))
 
 
-def draw_vehicle(ax: Axes, vehicle: AnyVehicle, centre: float, *, scale: float = 1.0) -> None:
-    """The vehicle on the base line, its centre of mass at `centre` [m], heights by this scale."""
+def draw_vehicle(
+    ax: Axes, vehicle: AnyVehicle, centre: float, *, scale: float = 1.0, to: float = 1.0
+) -> None:
+    """The vehicle on the base line, its centre of mass at `centre` [m], heights by this scale.
+
+    It goes to the right, or to the left with `to` = -1.
+    """
     at = vehicle.axle_positions
     if isinstance(vehicle, Vehicle):
         boxes = _boxes(vehicle)
-        _draw_bodies(ax, vehicle, boxes, centre, scale)
+        _draw_bodies(ax, vehicle, boxes, centre, scale, to)
         first = max(boxes, key=lambda box: box.front)
         front, middle = first.front, 0.5 * (first.floor + first.roof)
     else:
-        _draw_train(ax, vehicle, centre, scale)
+        _draw_train(ax, vehicle, centre + to * at, scale)
         front, middle = at[0] + (1.0 if isinstance(vehicle, MovingMasses) else 0.3), 0.5 * AXLE
-    ahead = symbols.local(ax, centre + front)
+    ahead = symbols.local(ax, centre + to * front)
     middle *= scale
-    symbols.stroke(ax, ahead, [(5.0, middle), (20.0, middle)], width=1.2)
-    head = [(26.0, middle), (18.0, middle + 3.0), (18.0, middle - 3.0)]
+    symbols.stroke(ax, ahead, [(5.0 * to, middle), (20.0 * to, middle)], width=1.2)
+    head = [(26.0 * to, middle), (18.0 * to, middle + 3.0), (18.0 * to, middle - 3.0)]
     symbols.stroke(ax, ahead, head, fill="black")
 
 
 def _draw_bodies(
-    ax: Axes, vehicle: Vehicle, boxes: list[_Box], centre: float, scale: float
+    ax: Axes, vehicle: Vehicle, boxes: list[_Box], centre: float, scale: float, to: float
 ) -> None:
     at, across = vehicle.axle_positions, symbols.level(ax)
     gaps = -np.diff(at) * symbols.points_per_metre(ax)
@@ -158,13 +164,13 @@ def _draw_bodies(
     widest = 6.0 * scale if most < 3 else 4.5 * scale
     half = float(np.clip(0.15 * gaps.min(initial=np.inf), 0.8, widest))
     for box in boxes:
-        back, front = centre + box.back, centre + box.front
+        back, front = centre + to * box.back, centre + to * box.front
         floor, roof = scale * box.floor, scale * box.roof
         outline = [(back, floor), (front, floor), (front, roof), (back, roof)]
         symbols.stroke(ax, across, outline, fill=PALE)
         radius = (5.5 if len(boxes) == 1 else 4.5) * scale
-        symbols.centre_of_mass(ax, centre + box.centre, 0.5 * (floor + roof), radius=radius)
-    for x, axle, (b, _) in zip(centre + at, vehicle.axles, vehicle.axle_order, strict=True):
+        symbols.centre_of_mass(ax, centre + to * box.centre, 0.5 * (floor + roof), radius=radius)
+    for x, axle, (b, _) in zip(centre + to * at, vehicle.axles, vehicle.axle_order, strict=True):
         _draw_axle(ax, x, axle, half, scale)
         if boxes[b].floor > FLOOR:
             for side in (-1.0, 1.0):
@@ -173,7 +179,7 @@ def _draw_bodies(
     for b, body in enumerate(vehicle.parts):
         for end in _ends(body):
             low, high = sorted((boxes[b], boxes[end.to]), key=lambda box: box.floor)
-            x = centre + boxes[b].centre + end.own
+            x = centre + to * (boxes[b].centre + end.own)
             if isinstance(end, Spring):
                 drawn = _beside(end.damping, end.friction_limit)
                 _draw_row(ax, x, drawn, scale * low.roof, scale * high.floor, 4.0 * scale)
@@ -230,8 +236,8 @@ def _draw_row(
         element(ax, x, shift, low, high, width)
 
 
-def _draw_train(ax: Axes, train: AnyVehicle, centre: float, scale: float) -> None:
-    for x in centre + train.axle_positions:
+def _draw_train(ax: Axes, train: AnyVehicle, at: NDArray[np.float64], scale: float) -> None:
+    for x in at:
         if isinstance(train, ForceTrain):
             symbols.arrow(ax, x, 1.0, scale * AXLE)
         else:
@@ -247,7 +253,7 @@ def _draw_model(ax: Axes, vehicle: AnyVehicle) -> None:
     back, front = min([back, *(b.back for b in boxes)]), max([front, *(b.front for b in boxes)])
     margin = 0.3 * (front - back)
     ax.set_xlim(back - margin, front + margin)
-    ax.set_ylim(-58.0, _top(vehicle) + 12.0)
+    ax.set_ylim(-58.0, top(vehicle) + 12.0)
     ax.set_yticks([])
     ax.spines[["left", "top", "right"]].set_visible(False)
     centre = "loads" if isinstance(vehicle, ForceTrain) else "mass"
