@@ -140,7 +140,8 @@ def _road(road: Road) -> str:
 def _standing(run: Run, number: int, time: float, at: Array) -> str:
     name = "the vehicle" if len(run.passages) == 1 else f"vehicle {number + 1}"
     on = "on the bridge" if ((at >= 0.0) & (at <= run.bridge.length)).any() else "off the bridge"
-    return f"          {name} stops {on} at t = {time:.3f} s, x = {at[0]:.3f} m, and stays"
+    where = f"x = {at[0]:.3f} m (front axle)"
+    return f"          {name} stops {on} at t = {time:.3f} s, {where}, and stays"
 
 
 def _off_road(run: Run) -> Iterator[str]:
@@ -169,13 +170,13 @@ def _frequencies(truck: AnyVehicle) -> Iterator[str]:
     holding, sliding = states.values()
     if len(holding) == 0:
         return
-    if len(holding) <= 2:
+    if np.array_equal(holding, sliding):
+        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
+    elif len(holding) <= 2:
         yield (
             f"          on rigid ground {_list(holding, '.3f')} Hz while friction holds, "
             f"{_list(sliding, '.3f')} Hz sliding"
         )
-    elif np.array_equal(holding, sliding):
-        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
     else:
         for state, found in states.items():
             yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -23,17 +24,19 @@ from spanwise.plotting.style import (
     legend_above,
     measure_of,
     measure_on,
+    new_figure,
     styled,
     whole,
     zero_line,
 )
-from spanwise.plotting.vehicle import draw_vehicle, overhang, top
+from spanwise.plotting.vehicle import draw_vehicle, extent, top
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
     from spanwise.run import Quantity, Run
+    from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -56,7 +59,7 @@ class RunPlot:
         time: float | None = None,
         ax: Axes | None = None,
     ) -> Figure:
-        """The vehicles on the bridge, to scale along the bridge.
+        """The vehicles on the bridge, to scale along the bridge; in a new figure lane by lane.
 
         Parameters
         ----------
@@ -81,25 +84,33 @@ class RunPlot:
         ]
         if front_axle is not None:
             stands[0] += number("front_axle", front_axle) - stands[0][0]
-        above = max(70.0, *(SCALE * top(each.vehicle) + 13.0 for each in run.passages))
-        ax = axes_for(ax, height=2.1 + (above - 70.0) / 72.0)
-        draw_bridge(ax, run.bridge, run.bridge.supports, above=above)
-        left, right = ax.get_xlim()
-        arrow = 0.08 * run.bridge.length
-        drawn = []
-        for passage, at in zip(run.passages, stands, strict=True):
-            to, beyond = (1.0 if passage.direction == "right" else -1.0), overhang(passage.vehicle)
-            ends = sorted([at[-1] - to * 1.2 * beyond, at[0] + to * (beyond + arrow)])
-            # Others are still far away, or have left.
-            if len(run.passages) == 1 or (ends[1] > 0.0 and ends[0] < run.bridge.length):
-                left, right = min(left, ends[0]), max(right, ends[1])
-                drawn.append((passage.vehicle, at[0] - to * passage.vehicle.axle_positions[0], to))
-        ax.set_xlim(left, right)
-        for road in ((left, 0.0), (run.bridge.length, right)):
-            ax.plot(road, (0.0, 0.0), color=GREY, linewidth=0.8, zorder=1.0)
-        for vehicle, centre, to in drawn:
-            draw_vehicle(ax, vehicle, centre, scale=SCALE, to=to)
-        return whole(ax)
+        drawn = _drawn(run, stands)
+        above = max(70.0, *(SCALE * top(each.vehicle) + 13.0 for each in drawn))
+        height = 2.1 + (above - 70.0) / 72.0
+        lanes = sorted({each.lane for each in drawn})
+        panels: list[tuple[Axes, list[_Drawn]]] = []
+        if ax is not None or len(lanes) == 1:
+            panels.append((axes_for(ax, height=height), drawn))
+        else:
+            rows = new_figure(len(lanes) * height).subplots(len(lanes), 1, sharex=True)
+            for panel, lane in zip(rows, lanes, strict=True):
+                panel.set_title(f"lane {lane}", loc="left", fontsize=8.0)
+                panels.append((panel, [each for each in drawn if each.lane == lane]))
+        for panel, there in panels:
+            draw_bridge(panel, run.bridge, run.bridge.supports, above=above)
+            left, right = panel.get_xlim()
+            left, right = (
+                min([left, *(each.ends[0] for each in drawn)]),
+                max([right, *(each.ends[1] for each in drawn)]),
+            )
+            panel.set_xlim(left, right)
+            for road in ((left, 0.0), (run.bridge.length, right)):
+                panel.plot(road, (0.0, 0.0), color=GREY, linewidth=0.8, zorder=1.0)
+            for each in there:
+                draw_vehicle(panel, each.vehicle, each.centre, scale=SCALE, to=each.to)
+        for panel, _ in panels[:-1]:
+            panel.set_xlabel("")
+        return whole(panels[0][0])
 
     @styled
     def envelope(self, quantity: Quantity = "moment", *, ax: Axes | None = None) -> Figure:
@@ -256,6 +267,32 @@ class RunPlot:
         front_axle_on_top(panels[0], run, chosen)
         figure.align_ylabels(panels)
         return whole(figure)
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A vehicle in a drawing: its lane, centre and direction, and the room that it takes [m]."""
+
+    vehicle: AnyVehicle
+    lane: int
+    centre: float
+    to: float
+    ends: tuple[float, float]
+
+
+def _drawn(run: Run, stands: list[Array]) -> list[_Drawn]:
+    """The vehicles that are on the bridge or near, with their axles where they stand; or all."""
+    drawn = []
+    for passage, at in zip(run.passages, stands, strict=True):
+        to = 1.0 if passage.direction == "right" else -1.0
+        centre = at[0] - to * passage.vehicle.axle_positions[0]
+        back, front = extent(passage.vehicle)
+        arrow = 0.08 * run.bridge.length
+        ends = sorted([centre + to * (back - 0.2), centre + to * (front + arrow)])
+        lane = int(to < 0.0) if passage.lane is None else passage.lane
+        drawn.append(_Drawn(passage.vehicle, lane, centre, to, (ends[0], ends[1])))
+    near = [each for each in drawn if each.ends[1] > 0.0 and each.ends[0] < run.bridge.length]
+    return near or drawn
 
 
 def _worst_time(run: Run) -> float:

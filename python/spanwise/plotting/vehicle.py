@@ -71,6 +71,14 @@ def overhang(vehicle: AnyVehicle) -> float:
     return max(0.2 * vehicle.wheelbase, 0.8) if alone else 0.8
 
 
+def extent(vehicle: AnyVehicle) -> tuple[float, float]:
+    """Rear and front of what is drawn, ahead of the centre of mass [m]."""
+    at, beyond = vehicle.axle_positions, overhang(vehicle)
+    boxes = _boxes(vehicle) if isinstance(vehicle, Vehicle) else []
+    back = min([at[-1] - beyond, *(box.back for box in boxes)])
+    return back, max([at[0] + beyond, *(box.front for box in boxes)])
+
+
 @dataclass(frozen=True)
 class _Box:
     """A body in the drawing: ends and centre of mass [m], floor and roof [points]."""
@@ -248,9 +256,8 @@ def _draw_train(ax: Axes, train: AnyVehicle, at: NDArray[np.float64], scale: flo
 
 def _draw_model(ax: Axes, vehicle: AnyVehicle) -> None:
     at, across = vehicle.axle_positions, symbols.level(ax)
-    back, front = at[-1] - overhang(vehicle), at[0] + overhang(vehicle)
+    back, front = extent(vehicle)
     boxes = _boxes(vehicle) if isinstance(vehicle, Vehicle) else []
-    back, front = min([back, *(b.back for b in boxes)]), max([front, *(b.front for b in boxes)])
     margin = 0.3 * (front - back)
     ax.set_xlim(back - margin, front + margin)
     ax.set_ylim(-58.0, top(vehicle) + 12.0)
