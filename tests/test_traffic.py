@@ -259,7 +259,10 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     (lambda: cross(ramp=-1.0), ("ramp = -1", "0 or more")),
     (lambda: cross(approach=10.0, ramp=20.0, road=sw.ISO8608("A")), ("ramp = 20", "10")),
     (lambda: cross(lift_off=1), ("lift_off = 1", "true or false")),
-    (lambda: sw.convoy([TRUCK] * 3, headway=[1, 2, 3]), ("headway = [1, 2, 3]", "each of the 2 gaps")),
+    (
+        lambda: sw.convoy([TRUCK] * 3, headway=[1, 2, 3]),
+        ("headway = [1, 2, 3]", "each of the 2 gaps"),
+    ),
     (lambda: sw.convoy([TRUCK] * 2, headway=0.0), ("headway[0] = 0 s", "greater than 0")),
 ]
 

@@ -19,7 +19,7 @@ from spanwise.plotting.style import (
     whole,
     zero_line,
 )
-from spanwise.roads.roughness import CLASSES, ISO_BAND, REFERENCE
+from spanwise.roads.roughness import CLASSES, REFERENCE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,10 +138,6 @@ class RoadPlot:
         ax.set_yscale("log")
         ax.set_xlim(*SEEN)
         low, high = means[0] / 8.0, means[-1] * 2.0
-        inside = here & (n >= ISO_BAND[0]) & (n <= ISO_BAND[1])
-        if inside.any():
-            middle = float(np.median(density[inside] * (n[inside] / REFERENCE) ** 2))
-            low, high = max(low, middle / 64.0), min(high, middle * 64.0)
         ax.set_ylim(low * (SEEN[1] / REFERENCE) ** -2, high * (0.02 / REFERENCE) ** -2)
         for letter, mean in CLASSES.items():
             _letter(ax, letter, mean, SEEN[1])
@@ -172,17 +168,15 @@ class RoadPlot:
 
 
 def _letter(ax: Axes, letter: str, mean: float, at: float) -> None:
-    """The letter of a class beside its lines, at the right edge, if that is in the figure."""
+    """The letter of a class beside its lines, at the right edge."""
     level = mean * (at / REFERENCE) ** -2
-    low, high = ax.get_ylim()
-    if low < level < high:
-        ax.annotate(
-            letter,
-            (at, level),
-            xytext=(3.0, 0.0),
-            textcoords="offset points",
-            va="center",
-            color=GREY,
-            fontsize=8.0,
-            annotation_clip=False,
-        )
+    ax.annotate(
+        letter,
+        (at, level),
+        xytext=(3.0, 0.0),
+        textcoords="offset points",
+        va="center",
+        color=GREY,
+        fontsize=8.0,
+        annotation_clip=False,
+    )
