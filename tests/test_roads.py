@@ -114,6 +114,10 @@ def test_profiles_from_files(tmp_path: Path) -> None:
         sw.Profile.read_csv(path, columns=("x", "z"), delimiter=";")
 
 
+def profile(x: Any, elevations: Any) -> sw.Profile:
+    return sw.Profile(x, elevations)
+
+
 REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: sw.ISO8608("Z"), "class = 'Z': must be one of A, B, C, D, E, F, G, H"),
     (lambda: sw.ISO8608(), "class, G: give one of the two"),
@@ -124,18 +128,18 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: sw.ISO8608("A", seed=-1), "seed = -1: must not be negative"),
     (lambda: sw.ISO8608("A", seed=1.5), "seed = 1.5: must be a whole number"),  # type: ignore[arg-type]
     (
-        lambda: sw.Profile(X[::-1], X),
+        lambda: profile(X[::-1], X),
         "x[1] = 24 m: x must increase from point to point: must be greater",
     ),
     (
-        lambda: sw.Profile([0, 1, 1, 2], [0, 0, 0, 0]),
+        lambda: profile([0, 1, 1, 2], [0, 0, 0, 0]),
         "x[2] = 1 m: x must increase from point to point: must be greater",
     ),
-    (lambda: sw.Profile([0, 1, 2], [0, 0, 0]), "x = 3 points: must be 4 or more"),
-    (lambda: sw.Profile(X, X[1:]), "elevation"),
-    (lambda: sw.Profile(X, X * nan), "elevation"),
-    (lambda: sw.Profile([0, 1, 2, 3, 99], [0] * 5), "max_gap"),
-    (lambda: sw.Profile("abc", X), "x = 'abc': must be a list of numbers"),
+    (lambda: profile([0, 1, 2], [0, 0, 0]), "x = 3 points: must be 4 or more"),
+    (lambda: profile(X, X[1:]), "elevation"),
+    (lambda: profile(X, X * nan), "elevation"),
+    (lambda: profile([0, 1, 2, 3, 99], [0] * 5), "max_gap"),
+    (lambda: profile("abc", X), "x = 'abc': must be a list of numbers"),
     (lambda: sw.Bump(0.0, -1.0, 0.1), "length"),
     (lambda: sw.Joint(0.0, 0.0, 0.1), "gap = 0.0: must be finite and greater than 0"),
     (lambda: sw.Step(nan, 0.1), "at"),

@@ -91,7 +91,7 @@ def test_forces_that_cross_together_add_up() -> None:
 @pytest.mark.parametrize("headway", [2.0, [2.0, 3.5]])
 def test_convoys(headway: Any) -> None:
     train = sw.vehicles.hs20()
-    vehicles = [TRUCK, train, TRUCK]
+    vehicles: list[sw.vehicles.AnyVehicle] = [TRUCK, train, TRUCK]
     convoy = sw.convoy(vehicles, headway=headway, entry=1.0, direction="left", speed=15.0, lane=2)
     gaps = [2.0, 2.0] if headway == 2.0 else headway
     assert [each.entry for each in convoy] == [1.0, 1.0 + gaps[0], 1.0 + sum(gaps)]
@@ -210,7 +210,7 @@ ROAD = sw.Profile(np.arange(0.0, 50.0), 0.01 * np.sin(np.arange(50.0)))
 HS20 = sw.vehicles.hs20()
 #: What is asked for, and what the message must contain: the key, the value, what is allowed.
 REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
-    *((lambda bad=bad: cross(speed=bad), ("speed", POSITIVE)) for bad in (-1.0, 0.0, nan, inf)),  # type: ignore[misc]
+    *((lambda bad=bad: cross(speed=bad), ("speed", POSITIVE)) for bad in (-1.0, 0.0, nan, inf)),
     (lambda: cross(speed=None), ("speed: missing; give it here or with every passage",)),
     (lambda: cross(passage(speed=-2.0)), ("speed = -2",)),
     (
@@ -234,7 +234,7 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     ),
     (lambda: cross(drive={"kind": "braking"}), ("braking", "missing deceleration")),
     *(
-        (lambda bad=bad: cross(drive=sw.Braking(deceleration=bad)), ("braking deceleration",))  # type: ignore[misc]
+        (lambda bad=bad: cross(drive=sw.Braking(deceleration=bad)), ("braking deceleration",))
         for bad in (-4.0, 0.0, nan, "4")
     ),
     (

@@ -127,9 +127,9 @@ class RoadPlot:
         n, density = road.psd(first, last)
         ax = axes_for(ax, height=1.3 * HEIGHT)
         ends = np.array(SEEN)
-        # Limits of the classes from their geometric means, which are a factor of 4 apart.
+        # Limits between the classes from their geometric means, which are a factor of 4 apart.
         means = list(CLASSES.values())
-        for limit in [means[0] / 2.0, *(2.0 * mean for mean in means)]:
+        for limit in (2.0 * mean for mean in means[:-1]):
             ax.plot(ends, limit * (ends / REFERENCE) ** -2, color=GREY, linewidth=0.5, zorder=0.6)
         # The window smears the first of them.
         here = (n >= max(SEEN[0], 2.0 * n[0])) & (n <= SEEN[1]) & (density > 0.0)
