@@ -140,7 +140,7 @@ def test_braking_stops_where_energy_says() -> None:
     braked = (run.time > 1.0) & (run.time < 3.0)
     difference = 0.5 * (run.axle_loads[braked, 0] - run.axle_loads[braked, 1]).mean()
     assert difference == pytest.approx(more, rel=0.05)
-    assert "braking from x = 2 m by 3 m/s2, friction 0.7" in summary(run)
+    assert "braking by 3 m/s2 from 2 m after its end of the bridge, friction 0.7" in summary(run)
 
 
 def test_friction_bounds_the_brakes() -> None:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.run import Extremes, Run
@@ -97,7 +98,7 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     drive = run.settings["drive"] if passage.drive is None else plain_drive(passage.drive)
     way = [f"{motion.speed[0]:g} m/s", _drive(drive)]
     way.append(f"{motion.speed[-1]:.6g} m/s at the end")
-    if len(run.passages) > 1:
+    if not is_alone(run.passages):
         lane = int(passage.direction == "left") if passage.lane is None else passage.lane
         way[:0] = [f"to the {passage.direction} in lane {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
@@ -114,8 +115,8 @@ def _drive(drive: object) -> str:
     if drive["kind"] == "speeds":
         return f"{len(given['times'])} speeds in time"
     return (
-        f"braking from x = {given['start']:g} m by {given['deceleration']:g} m/s2, "
-        f"friction {given['friction']:g}"
+        f"braking by {given['deceleration']:g} m/s2 from {given['start']:g} m after its end of the "
+        f"bridge, friction {given['friction']:g}"
     )
 
 
