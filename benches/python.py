@@ -6,12 +6,13 @@ import statistics
 import time
 
 import spanwise as sw
+from spanwise.traffic import Drive, Plain
 
 CALLS = 400
 HISTORIES = ("deflection", "moment", "shear_left", "shear_right", "reactions")
 
 
-def crossed(drive: sw.crossing.Drive, *, fetch: bool) -> sw.Run:
+def crossed(drive: Drive, *, fetch: bool) -> sw.Run:
     run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, drive=drive, step=1e-3)
     if fetch:
         for name in HISTORIES:
@@ -24,7 +25,8 @@ BRIDGE = sw.Bridge(spans=[18.288] * 2, EI=1941464053.44, mass=6037.70066, statio
 TRUCK = sw.vehicles.kishan_1973()
 
 if __name__ == "__main__":
-    for drive in ("constant-traction", "constant-speed"):
+    drives: tuple[Plain, ...] = ("constant-traction", "constant-speed")
+    for drive in drives:
         for fetch in (False, True):
             times = []
             for _ in range(CALLS):

@@ -141,7 +141,7 @@ impl<'a> Course<'a> {
                 positive("braking deceleration", braking.deceleration)?;
                 finite("braking start", braking.from)?;
                 not_negative("braking ramp", braking.ramp)?;
-                positive("braking adhesion", braking.adhesion)?;
+                positive("braking friction", braking.adhesion)?;
                 Some(*braking)
             }
             _ => None,

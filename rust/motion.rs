@@ -31,19 +31,19 @@ impl Motion {
     pub fn through(x: f64, times: &[f64], speeds: &[f64]) -> Result<Self, Error> {
         if times.is_empty() || times.len() != speeds.len() {
             let value = format!("{} times and {} speeds", times.len(), speeds.len());
-            return Err(Error::input("speed history", value, "give as many speeds as times, one or more"));
+            return Err(Error::input("speeds", value, "give as many speeds as times, one or more"));
         }
         for (i, (&t, &v)) in times.iter().zip(speeds).enumerate() {
-            finite(format!("speed history time[{i}]"), t)?;
-            not_negative(format!("speed history speed[{i}]"), v)?;
+            finite(format!("times[{i}]"), t)?;
+            not_negative(format!("speeds[{i}]"), v)?;
             if i > 0 && t <= times[i - 1] {
                 let allowed = format!("must be greater than the time before it, {} s", times[i - 1]);
-                return Err(Error::input(format!("speed history time[{i}]"), format!("{t} s"), allowed));
+                return Err(Error::input(format!("times[{i}]"), format!("{t} s"), allowed));
             }
         }
         let mut pieces = vec![(0.0, Coordinate { x, v: speeds[0], a: 0.0 })];
         if times[0] < 0.0 {
-            return Err(Error::input("speed history time[0]", format!("{} s", times[0]), "must be 0 or more"));
+            return Err(Error::input("times[0]", format!("{} s", times[0]), "must be 0 or more"));
         }
         let mut way = x + speeds[0] * times[0];
         for (i, (&t, &v)) in times.iter().zip(speeds).enumerate() {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import os
 from pathlib import Path
 
@@ -117,21 +118,115 @@ def test_every_argument_is_a_key() -> None:
         "drive": '"constant-traction"',
         "damping": "[0.01, 0.02]",
         "approach": "5.0",
+        "ramp": "2.0",
         "tail": "0.1",
         "sections": "[9.0, 18.0]",
         "recovery": '"superposition"',
         "step": "0.001",
         "beta": "0.25",
         "gravity": "9.8",
+        "lift_off": "false",
         "mask": "0.1",
     }
     arguments = list(inspect.signature(sw.cross).parameters)[2:]
+    arguments.remove("road")  # has a table of its own
     assert list(given) == arguments
     text = "[crossing]\n" + "\n".join(f"{key} = {value}" for key, value in given.items())
     run = sw.Case.parse(BRIDGE + VEHICLE + text).run()
     assert run.settings["mask"] == 0.1
     assert run.settings["damping"] == [0.01, 0.02]
     assert run.sections.tolist() == [9.0, 18.0]
+
+
+TRAFFIC = """
+[[traffic]]
+vehicle = { preset = "half-car" }
+speed = 15.0
+drive = { kind = "acceleration", acceleration = 0.5 }
+
+[[traffic]]
+direction = "left"
+entry = 0.5
+lane = 3
+road = { kind = "bump", at = 10.0, length = 2.0, height = 0.01 }
+
+[traffic.vehicle]
+loads = [60e3, 90e3]
+spacings = [4.0]
+"""
+ROAD = """
+[road]
+kind = "iso-8608"
+class = "B"
+seed = 7
+"""
+
+
+def test_traffic_on_a_road() -> None:
+    case = sw.Case.parse(BRIDGE + TRAFFIC + ROAD + CROSSING)
+    drive = sw.Acceleration(acceleration=0.5)
+    expected = (
+        sw.Passage(vehicle=sw.vehicles.half_car(), speed=15.0, drive=drive),
+        sw.Passage(
+            vehicle=sw.ForceTrain(loads=[60e3, 90e3], spacings=[4.0]),
+            direction="left",
+            entry=0.5,
+            lane=3,
+            road=sw.Bump(10.0, 2.0, 0.01),
+        ),
+    )
+    assert case.passages == expected
+    assert case.road == sw.ISO8608("B", seed=7)
+    run = case.run()
+    same = sw.cross(case.bridge, expected, speed=22.86, modes=3, road=case.road)
+    np.testing.assert_array_equal(run.moment, same.moment)
+    assert run.road == case.road
+    assert case.run(road=sw.Smooth()).road == sw.Smooth()
+
+
+def test_a_road_of_several_parts() -> None:
+    step = '[[road]]\nkind = "step"\nat = 0.0\nheight = 0.005\n'
+    case = sw.Case.parse(BRIDGE + VEHICLE + ROAD.replace("[road]", "[[road]]") + step + CROSSING)
+    assert case.road == sw.ISO8608("B", seed=7) + sw.Step(0.0, 0.005)
+
+
+@pytest.mark.parametrize(
+    ("drive", "expected"),
+    [
+        (
+            '{ kind = "braking", deceleration = 4.0, start = 5.0 }',
+            sw.Braking(deceleration=4.0, start=5.0),
+        ),
+        (
+            '{ kind = "speeds", times = [0.0, 2.0], speeds = [20.0, 15.0] }',
+            sw.Speeds(times=[0.0, 2.0], speeds=[20.0, 15.0]),
+        ),
+        ('{ kind = "acceleration", acceleration = -1 }', sw.Acceleration(acceleration=-1.0)),
+    ],
+)
+def test_drives_with_numbers(drive: str, expected: sw.Braking) -> None:
+    run = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + f"drive = {drive}\n").run()
+    same = sw.cross(run.bridge, run.truck, speed=22.86, modes=3, drive=expected)
+    np.testing.assert_array_equal(run.moment, same.moment)
+
+
+def test_a_measured_road_is_looked_for_beside_the_case(tmp_path: Path) -> None:
+    x = np.arange(-40.0, 45.0, 0.5)
+    points = "\n".join(f"{a!r},{b!r}" for a, b in zip(x.tolist(), np.sin(x).tolist(), strict=True))
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "profile.csv").write_text(points, encoding="utf-8")
+    path = tmp_path / "case.toml"
+    road = '[road]\nkind = "profile"\nfile = "data/profile.csv"\nscale = [1.0, 0.01]\n'
+    path.write_text(BRIDGE + VEHICLE + road + CROSSING + "approach = 30.0\n", encoding="utf-8")
+    case = sw.Case.read(path)
+    assert case.road == sw.Profile(x, 0.01 * np.sin(x))
+    # The report holds the points: it needs no file.
+    settings = json.loads(json.dumps(case.run().to_dict()["settings"]))
+    np.testing.assert_array_equal(sw.Case.from_dict(settings).run().moment, case.run().moment)
+    assert sw.Case.parse(path.read_text(), folder=tmp_path).road == case.road
+    path.write_text(path.read_text().replace("profile.csv", "profil.csv"), encoding="utf-8")
+    with pytest.raises(FileNotFoundError, match=r"data.profil\.csv"):
+        sw.Case.read(path)
 
 
 def test_read_names_the_file_in_errors(tmp_path: Path) -> None:
@@ -223,7 +318,7 @@ stiffness = 2e5
 damping = 3e3
 """
 
-KNOWN = r"allowed: \[bridge\], \[vehicle\], \[crossing\]"
+KNOWN = r"allowed: \[bridge\], \[vehicle\], \[\[traffic\]\], \[road\], \[crossing\]"
 REFUSED = [
     # Tables
     ("", r"case: missing \[bridge\], \[vehicle\], \[crossing\]"),
@@ -336,14 +431,66 @@ REFUSED = [
         r"'friction_limit' \(belongs in each \[\[vehicle\.axles\]\]\)",
     ),
     # Crossing
-    (BRIDGE + VEHICLE + "[crossing]", r"case, \[crossing\]: missing speed"),
     (
         BRIDGE + VEHICLE + CROSSING + "sped = 1",
         r"'sped' \(did you mean 'speed'\?\); allowed: speed,",
     ),
     (BRIDGE + VEHICLE + CROSSING + "DRIVE = 1", r"'DRIVE' \(did you mean 'drive'\?\)"),
     (BRIDGE + VEHICLE + CROSSING + "EI = 1", r"unknown key 'EI' \(belongs in \[bridge\]\)"),
-    (BRIDGE + VEHICLE + CROSSING + "bridge = 1", r"unknown key 'bridge'; allowed: speed"),
+    (
+        BRIDGE + VEHICLE + CROSSING + "bridge = 1",
+        r"'bridge' \(a table of its own, \[bridge\]\); allowed: s",
+    ),
+    # Traffic
+    (
+        BRIDGE + VEHICLE + TRAFFIC + CROSSING,
+        r"\[vehicle\] and \[\[traffic\]\]: give one of the two",
+    ),
+    (BRIDGE + "[traffic]\nspeed = 1" + CROSSING, r"traffic = .*: must be tables, \[\[traffic\]\]"),
+    (BRIDGE + "[[traffic]]\nspeed = 1" + CROSSING, r"case, traffic\[0\]: missing vehicle"),
+    (
+        BRIDGE + TRAFFIC.replace("lane", "lanes") + CROSSING,
+        r"traffic\[1\]: unknown key 'lanes' \(did you mean 'lane'\?\); allowed: vehicle, speed, ",
+    ),
+    (BRIDGE + TRAFFIC.replace("lane = 3", "lane = 3.5") + CROSSING, r"traffic\[1\]: lane = 3\.5: "),
+    (
+        BRIDGE + TRAFFIC.replace("half-car", "half-cart") + CROSSING,
+        r"traffic\[0\]: vehicle: preset = 'half-cart': .*did you mean 'half-car'",
+    ),
+    (
+        BRIDGE + TRAFFIC.replace('{ preset = "half-car" }', '"half-car"') + CROSSING,
+        r"traffic\[0\]: vehicle = 'half-car': must be a table",
+    ),
+    (
+        BRIDGE + TRAFFIC.replace("length = 2.0", "length = 0.0") + CROSSING,
+        r"traffic\[1\]: road: .*length",
+    ),
+    (
+        BRIDGE + TRAFFIC.replace('"acceleration"', '"accelerate"') + CROSSING,
+        r"traffic\[0\]: drive kind = 'accelerate': .*did you mean 'acceleration'",
+    ),
+    (BRIDGE + VEHICLE + "lane = 1" + CROSSING, r"'lane' \(belongs in each \[\[traffic\]\]\)"),
+    (BRIDGE + VEHICLE + CROSSING + "entry = 1", r"'entry' \(belongs in each \[\[traffic\]\]\)"),
+    # Road
+    (BRIDGE + VEHICLE + CROSSING + "road = 1", r"'road' \(a table of its own, \[road\]\); allowed"),
+    (
+        BRIDGE + VEHICLE + CROSSING + ROAD.replace("seed", "sed"),
+        r"case, \[road\]: unknown key 'sed' \(did you mean 'seed'\?\); allowed: class, iri, ",
+    ),
+    (
+        BRIDGE + VEHICLE + CROSSING + ROAD + "speed = 3",
+        r"\[road\]: unknown key 'speed' \(belongs in \[crossing\]\)",
+    ),
+    (
+        BRIDGE + VEHICLE + CROSSING + ROAD.replace('"B"', '"Q"'),
+        r"\[road\]: class = 'Q': must be one of A, B",
+    ),
+    (
+        BRIDGE + VEHICLE + CROSSING + ROAD.replace("[road]", "[[road]]") + "[[road]]\nat = 1",
+        r"\[road\]: road\[1\]: missing kind; allowed: iso-8608",
+    ),
+    (BRIDGE + VEHICLE + CROSSING + "contact_patch = 1", r"'contact_patch' \(belongs in \[road\]\)"),
+    (BRIDGE + VEHICLE + CROSSING + "deceleration = 1", r"'deceleration' \(belongs in a drive\)"),
     # TOML
     (BRIDGE + "mass = 3", r"case, line 7: is not valid TOML: .*: mass = 3"),
     ("[bridge]\nEI = 3e9 N m2\n", r"case, line 2: is not valid TOML: .*: EI = 3e9 N m2"),
@@ -363,6 +510,11 @@ def test_what_cannot_be_used_is_explained(text: str, message: str) -> None:
 
 
 def test_values_are_checked_when_it_runs() -> None:
+    # Not before: every passage may have a speed of its own, or the command line gives it.
+    case = sw.Case.parse(BRIDGE + VEHICLE + "[crossing]", source="a.toml")
+    with pytest.raises(ValueError, match=r"a\.toml, \[crossing\]: speed: missing; give it here or"):
+        case.run()
+    assert case.run(speed=20.0).settings["speed"] == 20.0
     case = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + 'drive = "constant"', source="a.toml")
     with pytest.raises(ValueError, match=r'a\.toml, \[crossing\]: drive = "constant": must be'):
         case.run()

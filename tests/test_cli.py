@@ -32,6 +32,20 @@ modes = 3
 #: So soft that the vehicle does not come out of the sag.
 SOFT = CASE.replace("1.9415e9", "1e7").replace("22.86", "1.0")
 
+ROAD = """
+[road]
+kind = "iso-8608"
+class = "C"
+seed = 2
+"""
+JOINT = """
+[[road]]
+kind = "joint"
+at = 0.0
+gap = 0.05
+depth = 0.02
+"""
+
 FIGURES = ("model", "deflection", "moment", "shear", "impact_factors", "vehicle")
 
 
@@ -91,6 +105,75 @@ def test_summary_of_every_kind_of_case(tmp_path: Path, capsys: pytest.CaptureFix
 def test_modes_go_before_those_of_the_case(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["cross", str(case), "--modes", "1", "--json", "-"]) == 0
     assert len(json.loads(capsys.readouterr().out)["frequencies"]) == 1
+
+
+def test_speed_and_road_go_before_those_of_the_case(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = ["--speed", "15", "--road", "B", "--seed", "3"]
+    assert main(["cross", str(case), *given, "--json", "-"]) == 0
+    settings = json.loads(capsys.readouterr().out)["settings"]
+    assert settings["crossing"]["speed"] == 15.0
+    assert settings["road"] == sw.ISO8608("B", seed=3).arguments | {"band": [0.01, 4.0]}
+    case.write_text(CASE + '[[road]]\nkind = "iso-8608"\nG = 2e-5\n' + JOINT, encoding="utf-8")
+    assert main(["cross", str(case), "--seed", "3", "--json", "-"]) == 0
+    road = json.loads(capsys.readouterr().out)["settings"]["road"]
+    assert (road[0]["G"], road[0]["seed"], road[1]["kind"]) == (2e-5, 3, "joint")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--speed", "-2"], "speed = -2: must be"),
+        (["--road", "b"], "class = 'b': must be one of A, B, C"),
+        (["--road", "B", "--seed", "-1"], "seed = -1: must not be negative"),
+        (["--seed", "1"], "has no random [road]; add one, or --road"),
+    ],
+)
+def test_bad_overrides(
+    case: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
+    assert main(["cross", str(case), *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("spanwise: error: ")
+    assert message in err
+    assert err.count("\n") == 1
+
+
+def test_road(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case.write_text(CASE + ROAD, encoding="utf-8")
+    assert main(["road", str(case)]) == 0
+    road = sw.ISO8608("C", seed=2)
+    out = capsys.readouterr().out
+    assert "section   0 to 1024 m\n" in out
+    assert f"IRI       {road.iri(0.0, 1024.0):.2f} m/km\n" in out
+    assert "ISO 8608  class C (0.000128 to 0.000512 m3), fitted G_d(n0)" in out
+    profile = tmp_path / "profile.csv"
+    x = [0.2 * k for k in range(1000)]
+    lines = [f"{a},{b}" for a, b in zip(x, road.elevation(x), strict=True)]
+    profile.write_text("\n".join(["x,z", *lines]), encoding="ascii")
+    assert main(["road", str(profile), "--start", "20", "--end", "120"]) == 0
+    out = capsys.readouterr().out
+    assert "profile, 1000 points from 0 to 199.8 m" in out
+    assert "section   20 to 120 m\n" in out
+    assert "class C" in out
+    assert main(["road", str(profile), "--end", "500"]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "covers only" in err
+
+
+def test_figures_of_traffic(tmp_path: Path) -> None:
+    case = tmp_path / "case.toml"
+    bridge, _, crossing = CASE.partition("[vehicle]")
+    traffic = '[[traffic]]\nvehicle = { preset = "hs20" }\n'
+    other = traffic + 'direction = "left"\n'
+    crossing = "[crossing]\nspeed = 20.0\n"
+    case.write_text(bridge + traffic + other + ROAD + crossing, encoding="utf-8")
+    assert main(["cross", str(case), "--plot", str(tmp_path / "figures")]) == 0
+    names = {*FIGURES, "vehicle_1", "vehicle_2", "road"} - {"vehicle"}
+    assert left(tmp_path / "figures") == {f"{n}.{form}" for n in names for form in ("png", "svg")}
 
 
 def test_json_alone_on_standard_output(case: Path, capsys: pytest.CaptureFixture[str]) -> None:

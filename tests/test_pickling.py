@@ -37,6 +37,10 @@ def test_copies_are_the_same(bridge: sw.Bridge) -> None:
         np.testing.assert_array_equal(again.masses, bridge.masses)
         np.testing.assert_array_equal(again.modes(5).frequencies, bridge.modes(5).frequencies)
     assert pickle.loads(pickle.dumps(vehicle)) == vehicle
+    for make in sw.vehicles.PRESETS.values():
+        for same in (pickle.loads(pickle.dumps(make())), copy.deepcopy(make())):
+            assert same == make()
+            np.testing.assert_array_equal(same.static_loads(), make().static_loads())
     assert copy.deepcopy(vehicle) == vehicle
 
 

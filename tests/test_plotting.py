@@ -245,6 +245,117 @@ def test_vehicle_motion(drawn: Scene) -> None:
     check(drawn.run.plot.vehicle(), *units, *(["mrad"] if len(drawn.vehicle.axles) > 1 else []))
 
 
+@dataclass(frozen=True)
+class Traffic:
+    """What crosses in both directions on a bad road, one of them braking to a stop."""
+
+    run: sw.Run
+
+
+@pytest.fixture(scope="module")
+def traffic() -> Traffic:
+    bridge = sw.Bridge(spans=[20.0, 20.0], EI=5e9, mass=8e3, stations_per_span=4)
+    passages = [
+        sw.Passage(vehicle=sw.vehicles.hs20_44()),
+        sw.Passage(vehicle=sw.vehicles.t44(), direction="left", entry=0.5),
+        sw.Passage(
+            vehicle=sw.vehicles.kishan_1973(),
+            speed=12.0,
+            drive=sw.Braking(deceleration=4.0, start=2.0),
+            lane=7,
+        ),
+    ]
+    run = sw.cross(bridge, passages, speed=25.0, road=sw.ISO8608("D", seed=1), approach=40.0)
+    assert run.lift_offs
+    assert run.vehicles[2].stopped is not None
+    return Traffic(run)
+
+
+def test_models_of_traffic_are_drawn_lane_by_lane(traffic: Traffic) -> None:
+    plot = traffic.run.plot
+    # The first reaches the bridge after 1.6 s, the second 0.5 s later, the third after 3.3 s.
+    figure = plot.model(time=3.4)
+    check(figure, "m")
+    assert [ax.get_title(loc="left") for ax in figure.axes] == ["lane 0", "lane 1", "lane 7"]
+    ax = matplotlib.figure.Figure().subplots()
+    assert plot.model(time=3.4, ax=ax).axes == [ax]
+    check(plot.model(), "m")
+    with pytest.raises(ValueError, match=r"front_axle = 3\.0: of several vehicles give the time"):
+        plot.model(front_axle=3.0)
+
+
+def test_motions_of_traffic(traffic: Traffic) -> None:
+    plot, run = traffic.run.plot, traffic.run
+    first, second, third = (plot.vehicle(number) for number in (1, 2, 3))
+    check(first, "mm", "mrad", "kN", "m/s", "m")
+    check(second, "mm", "kN", "m/s", "m")
+    check(third, "mm", "mrad", "kN", "m/s", "m")
+    assert "Heave" not in labels(second)
+    for figure in (first, second, third):
+        assert "Road under\naxle 1 [mm]" in labels(figure)
+    assert "bands: the wheel is off the road" in labels(first)
+    # Heave, pitch, loads of three axles, road, speed.
+    bands = [len(ax.patches) for ax in first.axes]
+    assert bands == [0, 0, *run.off_road.count[:3], 0, 0]
+    for bad in (0, 4):
+        with pytest.raises(ValueError, match=f"number = {bad}: must be 1 to 3"):
+            plot.vehicle(bad)
+
+
+def test_axle_positions_on_top_of_those_that_come_back_or_stand(traffic: Traffic) -> None:
+    run = traffic.run
+    for number, to in ((2, -1.0), (3, 1.0)):
+        (top,) = run.plot.vehicle(number).axes[0].child_axes
+        position, _ = top._functions  # type: ignore[attr-defined]
+        front = run.vehicles[number - 1].axle_positions[:, 0]
+        np.testing.assert_allclose(position(run.time), front, atol=1e-3)
+        assert np.all(to * np.diff(position(np.linspace(-1.0, 20.0, 50))) >= 0.0)
+
+
+def test_axle_loads_of_traffic(traffic: Traffic) -> None:
+    ax = only_axes(traffic.run.plot.envelope("axle_loads"))
+    names = [text.get_text() for text in ax.get_xticklabels()]
+    assert names == [f"{v}.{k}" for v, k in traffic.run.axles]
+    ax = only_axes(traffic.run.plot.history("axle_loads", 1))
+    assert ax.get_title(loc="right") == "vehicle 1 axle 1"
+    assert len(ax.patches) == traffic.run.off_road.count[0]
+
+
+@pytest.mark.parametrize(
+    "road",
+    [
+        sw.ISO8608("C", seed=1),
+        sw.ISO8608("A") + sw.Pothole(20.0, 1.0, 0.03),
+        sw.Bump(10.0, 2.0, 0.02),
+        sw.Smooth(),
+        sw.Profile(np.arange(0.0, 60.0), 0.01 * np.sin(np.arange(60.0))),
+    ],
+    ids=lambda road: type(road).__name__,
+)
+def test_roads(road: sw.roads.Road) -> None:
+    figure = road.plot()
+    check(figure, "m", "mm", "cycle/m", "m$^3$")
+    _, spectrum = figure.axes
+    letters = [text.get_text() for text in spectrum.texts]
+    assert letters == list("ABCDEFGH")
+    check(road.plot.profile(5.0, 30.0), "m", "mm")
+    check(road.plot.psd(5.0, 55.0), "cycle/m")
+    with pytest.raises(ValueError, match="end = 5 m: must be finite and greater than start, 30 m"):
+        road.plot.profile(30.0, 5.0)
+
+
+def test_the_spectrum_lies_between_the_limits_of_its_class() -> None:
+    _, ax = sw.ISO8608("C", seed=1).plot().axes
+    lines = [(np.asarray(each.get_xdata()), np.asarray(each.get_ydata())) for each in ax.lines]
+    limits = sorted(float(y[0] * (x[0] / 0.1) ** 2) for x, y in lines if len(x) == 2)
+    # Between B and C, and between C and D.
+    assert any(np.isclose(limits, 128e-6))
+    assert any(np.isclose(limits, 512e-6))
+    n, density = max(lines, key=lambda line: len(line[0]))
+    levels = density * (n / 0.1) ** 2
+    assert 128e-6 < np.median(levels) < 512e-6
+
+
 def test_axle_positions_on_top_go_on_beyond_the_axis(two_spans: Scene) -> None:
     ax = only_axes(two_spans.run.plot.history("deflection"))
     (top,) = ax.child_axes

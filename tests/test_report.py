@@ -45,25 +45,16 @@ def report(run: sw.Run) -> dict[str, Any]:
 
 def again(settings: dict[str, Any]) -> sw.Run:
     """The run that the settings of a report describe."""
-    vehicle = dict(settings["vehicle"])
-    axles = [
-        sw.Axle(**{**axle, "friction_limit": float(axle["friction_limit"])})
-        for axle in vehicle.pop("axles")
-    ]
-    return sw.cross(
-        sw.Bridge(**settings["bridge"]),
-        sw.Vehicle(**vehicle, axles=axles),
-        **settings["crossing"],
-    )
+    return sw.Case.from_dict(settings).run()
 
 
 def test_keys(report: dict[str, Any]) -> None:
     assert set(report) == {
         *("version", "settings", "sections", "supports", "frequencies", "final_speed", "steps"),
-        *("impact_factors", "clamp_moments", *QUANTITIES),
+        *("vehicles", "lift_offs", "impact_factors", "clamp_moments", *QUANTITIES),
     }
     assert report["version"] == sw.__version__
-    assert set(report["settings"]) == {"bridge", "vehicle", "crossing"}
+    assert set(report["settings"]) == {"bridge", "vehicle", "road", "crossing"}
     for quantity in (*QUANTITIES, "clamp_moments"):
         assert set(report[quantity]) == {
             f"{kind}{sense}{what}"
@@ -113,6 +104,69 @@ def test_the_settings_compute_the_run_again(run: sw.Run, report: dict[str, Any])
     assert same.settings == run.settings
 
 
+@pytest.mark.parametrize(
+    ("traffic", "settings"),
+    [
+        (
+            [
+                sw.Passage(vehicle=sw.vehicles.articulated_5_axle(), drive="constant-traction"),
+                sw.Passage(
+                    vehicle=sw.vehicles.t44(),
+                    speed=15.0,
+                    direction="left",
+                    entry=0.3,
+                    lane=4,
+                    road=sw.ISO8608("A", seed=2),
+                ),
+            ],
+            {"road": sw.ISO8608("D", seed=1) + sw.Joint(0.0, 0.05, 0.02), "ramp": 5.0},
+        ),
+        (sw.vehicles.kishan_1973(), {"drive": sw.Braking(deceleration=4.0), "tail": 0.5}),
+        (
+            sw.MovingMasses(masses=[1e4, 2e4], spacings=[3.0]),
+            {"drive": sw.Speeds(times=[0.0, 1.0], speeds=[20.0, 10.0]), "lift_off": False},
+        ),
+        (
+            sw.vehicles.quarter_car(),
+            {"road": sw.Profile(np.arange(-20.0, 40.0), np.zeros(60)) + sw.Bump(2.0, 1.0, 0.05),
+             "approach": 15.0},
+        ),
+    ],
+    ids=["opposing", "braking", "masses", "measured"],
+)  # fmt: skip
+def test_traffic_roads_and_drives_are_computed_again(
+    traffic: Any, settings: dict[str, Any]
+) -> None:
+    bridge = sw.Bridge(spans=[22.0], EI=2e9, mass=7e3, stations_per_span=5)
+    run = sw.cross(bridge, traffic, **{"speed": 20.0, "modes": 3, **settings})
+    report = json.loads(json.dumps(run.to_dict()))
+    same = again(report["settings"])
+    assert_array_equal(same.moment, run.moment)
+    assert_array_equal(same.axle_loads, run.axle_loads)
+    assert same.lift_offs == run.lift_offs
+    assert same.settings == run.settings
+    assert same.passages == run.passages
+    assert same.road == run.road
+    assert same.to_dict() == run.to_dict()
+
+
+def test_vehicles_of_the_report() -> None:
+    bridge = sw.Bridge(spans=[22.0], EI=2e9, mass=7e3, stations_per_span=5)
+    passages = [
+        sw.Passage(vehicle=sw.vehicles.hs20_44()),
+        sw.Passage(vehicle=sw.vehicles.half_car(), direction="left", speed=15.0),
+    ]
+    run = sw.cross(bridge, passages, speed=25.0, road=sw.ISO8608("D", seed=1))
+    first, second = run.to_dict()["vehicles"]
+    assert first["static_axle_loads"] == run.static_axle_loads[:3].tolist()
+    assert second["static_axle_loads"] == run.static_axle_loads[3:].tolist()
+    assert (first["final_speed"], second["final_speed"]) == (25.0, 15.0)
+    assert first["stopped"] is None
+    counts = first["off_road"]["count"] + second["off_road"]["count"]
+    assert counts == run.off_road.count.tolist()
+    assert sum(counts) == len(run.to_dict()["lift_offs"]) > 0
+
+
 def test_json_is_strict(tmp_path: Path, run: sw.Run) -> None:
     def refuse(name: str) -> None:
         raise AssertionError(name)
@@ -160,6 +214,7 @@ def test_csv_files(tmp_path: Path, run: sw.Run) -> None:
     quantities = [*QUANTITIES, "clamp_moments"]
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "impact_factors.csv",
+        "lift_offs.csv",
         "history_vehicle.csv",
         *(f"{kind}_{quantity}.csv" for kind in ("envelope", "history") for quantity in quantities),
     }
@@ -193,6 +248,33 @@ def test_history_of_the_vehicle(tmp_path: Path, run: sw.Run) -> None:
     assert_array_equal(columns["position of axle 2 [m]"], run.vehicle.axle_positions[:, 1])
     assert_array_equal(columns["friction of axle 1 [N]"], run.vehicle.friction[:, 0])
     assert len(head) == 1 + 9 + 3 * 2
+
+
+def test_histories_of_several_vehicles(tmp_path: Path) -> None:
+    bridge = sw.Bridge(spans=[22.0], EI=2e9, mass=7e3, stations_per_span=5)
+    passages = [
+        sw.Passage(vehicle=sw.vehicles.hs20_44()),
+        sw.Passage(vehicle=sw.vehicles.flm3(), direction="left"),
+    ]
+    run = sw.cross(bridge, passages, speed=25.0, road=sw.ISO8608("D", seed=1))
+    run.to_csv(tmp_path)
+    assert not (tmp_path / "history_vehicle.csv").exists()
+    head, body = rows(tmp_path / "history_vehicle_1.csv")
+    columns = dict(zip(head, numbers(body).T, strict=True))
+    motion = run.vehicles[0]
+    trailer = motion.bodies[1].pitch
+    assert_array_equal(columns["pitch velocity of body 2 [rad/s]"], trailer.velocity)
+    assert_array_equal(columns["hop of axle 3 [m]"], motion.hops[2].displacement)
+    assert_array_equal(columns["elevation of axle 2 [m]"], motion.elevations[:, 1])
+    head, body = rows(tmp_path / "history_vehicle_2.csv")
+    assert not any("heave" in name or "hop" in name for name in head)
+    head, body = rows(tmp_path / "history_axle_loads.csv")
+    assert head[1] == "load of vehicle 1 axle 1 [N]"
+    assert head[-1] == "load of vehicle 2 axle 4 [N]"
+    head, body = rows(tmp_path / "lift_offs.csv")
+    assert head[:3] == ["axle", "vehicle", "axle of the vehicle"]
+    expected = [(each.axle, 1, each.axle, each.start, each.end) for each in run.lift_offs]
+    assert [tuple(row[:5]) for row in numbers(body).tolist()] == expected
 
 
 def test_envelopes(tmp_path: Path, run: sw.Run) -> None:

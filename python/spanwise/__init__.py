@@ -25,6 +25,7 @@ from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 __all__ = [
+    "ISO8608",
     "Acceleration",
     "Along",
     "Axle",
@@ -38,7 +39,6 @@ __all__ = [
     "Extremes",
     "ForceTrain",
     "Hinge",
-    "ISO8608",
     "ImpactFactors",
     "Joint",
     "LiftOff",

@@ -10,8 +10,8 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._values import envelope, history, places, plain, quantities
-from spanwise.run import Quantity, Run
+from spanwise._values import axle_names, envelope, history, places, plain, quantities
+from spanwise.run import Motion, Quantity, Run, VehicleMotion
 from spanwise.table import COLUMNS
 
 Array: TypeAlias = NDArray[np.float64]
@@ -25,17 +25,16 @@ UNITS: Final = {
     "clamp_moments": "N m",
     "axle_loads": "N",
 }
-MOTION_UNITS: Final = {
-    "heave": "m",
-    "heave_velocity": "m/s",
-    "heave_acceleration": "m/s2",
-    "pitch": "rad",
-    "pitch_velocity": "rad/s",
-    "pitch_acceleration": "rad/s2",
+#: Of a coordinate with its rates.
+RATES: Final = {"displacement": "", "velocity": "/s", "acceleration": "/s2"}
+TRAVEL_UNITS: Final = {
     "travel": "m",
     "speed": "m/s",
     "acceleration": "m/s2",
+}
+AXLE_UNITS: Final = {
     "axle_positions": "m",
+    "elevations": "m",
     "suspension_shortenings": "m",
     "friction": "N",
 }
@@ -52,7 +51,11 @@ def csv_files(run: Run) -> Iterator[tuple[str, Iterator[bytes]]]:
     for quantity in quantities(run):
         rows = _history_rows(run, _labels(run, quantity), history(run, quantity))
         yield f"history_{quantity}.csv", _csv(rows)
-    yield "history_vehicle.csv", _csv(_history_rows(run, *_motion(run)))
+    alone = len(run.passages) == 1
+    for number, motion in enumerate(run.vehicles, 1):
+        name = "history_vehicle.csv" if alone else f"history_vehicle_{number}.csv"
+        yield name, _csv(_history_rows(run, *_motion(motion)))
+    yield "lift_offs.csv", _csv(_lift_off_rows(run))
 
 
 def _csv(rows: Iterable[Row]) -> Iterator[bytes]:
@@ -97,7 +100,7 @@ def _labels(run: Run, quantity: Quantity) -> list[str]:
     """Column heads of a history."""
     unit = UNITS[quantity]
     if quantity == "axle_loads":
-        return [f"load of axle {k:.0f} [{unit}]" for k in places(run, quantity)]
+        return [f"load of {name} [{unit}]" for name in axle_names(run)]
     name = {"reactions": "reaction", "clamp_moments": "clamp moment"}.get(quantity, quantity)
     sides = (" left of", " right of") if quantity == "shear" else (" at",)
     at = places(run, quantity).tolist()
@@ -110,16 +113,38 @@ def _history_rows(run: Run, labels: list[str], values: Array) -> Iterator[Row]:
         yield [float(time), *row.tolist()]
 
 
-def _motion(run: Run) -> tuple[list[str], Array]:
-    """Column heads and values of the motion of the vehicle."""
-    labels, columns = [], []
-    for name, unit in MOTION_UNITS.items():
-        values: Array = getattr(run.vehicle, name)
-        text = name.replace("_", " ")
-        if values.ndim == 1:
-            labels.append(f"{text} [{unit}]")
-        else:
-            each = text.removeprefix("axle ").removesuffix("s")
-            labels += [f"{each} of axle {k} [{unit}]" for k in range(1, values.shape[1] + 1)]
-        columns.append(values.reshape(len(values), -1))
-    return labels, np.hstack(columns)
+def _motion(motion: VehicleMotion) -> tuple[list[str], Array]:
+    """Column heads and values of the motion of a vehicle."""
+    found: dict[str, Array] = {}
+    for number, body in enumerate(motion.bodies, 1):
+        of = f" of body {number}" if len(motion.bodies) > 1 else ""
+        found |= _rates(body.heave, "heave", of, "m") | _rates(body.pitch, "pitch", of, "rad")
+    for number, hop in enumerate(motion.hops, 1):
+        if hop.displacement.any() or hop.acceleration.any():
+            found |= _rates(hop, "hop", f" of axle {number}", "m")
+    for name, unit in TRAVEL_UNITS.items():
+        found[f"{name} [{unit}]"] = getattr(motion, name)
+    for name, unit in AXLE_UNITS.items():
+        text = name.replace("_", " ").removeprefix("axle ").removesuffix("s")
+        columns = getattr(motion, name).T
+        if name == "elevations" and not columns.any():
+            continue
+        found |= {f"{text} of axle {k} [{unit}]": each for k, each in enumerate(columns, 1)}
+    return list(found), np.column_stack(list(found.values()))
+
+
+def _rates(motion: Motion, name: str, of: str, unit: str) -> dict[str, Array]:
+    """Columns of a coordinate and its rates by head."""
+    return {
+        f"{name}{'' if rate == 'displacement' else f' {rate}'}{of} [{unit}{per}]": getattr(
+            motion, rate
+        )
+        for rate, per in RATES.items()
+    }
+
+
+def _lift_off_rows(run: Run) -> Iterator[Row]:
+    yield ["axle", "vehicle", "axle of the vehicle", "start [s]", "end [s]", "duration [s]"]
+    for each in run.lift_offs:
+        times = (each.start, each.end, each.duration)
+        yield [each.axle, *run.axles[each.axle - 1], *times]

@@ -13,14 +13,18 @@ def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:
     """Names and contents; needs the extra ``spanwise[plot]``."""
     matplotlib = require("matplotlib", extra="plot")
     plot = run.plot
-    for name, figure in (
+    numbers = range(1, len(run.passages) + 1)
+    figures = [
         ("model", plot.model()),
         ("deflection", plot.envelope("deflection")),
         ("moment", plot.envelope("moment")),
         ("shear", plot.envelope("shear")),
         ("impact_factors", plot.impact_factors()),
-        ("vehicle", plot.vehicle()),
-    ):
+        *((f"vehicle_{k}" if len(numbers) > 1 else "vehicle", plot.vehicle(k)) for k in numbers),
+    ]
+    if not run.road.is_smooth:
+        figures.append(("road", run.road.plot()))
+    for name, figure in figures:
         png, svg = BytesIO(), BytesIO()
         figure.savefig(png, format="png", dpi=200)
         # The same run gives the same file.

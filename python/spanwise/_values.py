@@ -51,6 +51,22 @@ def envelope(run: Run, quantity: Quantity) -> dict[str, Array]:
     return columns
 
 
+def stop(run: Run, vehicle: int) -> tuple[float, Array] | None:
+    """When a vehicle, counted from 0, came to rest, and where its axles stand; or nothing."""
+    motion = run.vehicles[vehicle]
+    if motion.stopped is None:
+        return None
+    columns = motion.axle_positions.T
+    return motion.stopped, np.array([np.interp(motion.stopped, run.time, x) for x in columns])
+
+
+def axle_names(run: Run) -> list[str]:
+    """What the axles are called: by number, and by vehicle where there are several."""
+    if len(run.passages) == 1:
+        return [f"axle {axle}" for _, axle in run.axles]
+    return [f"vehicle {vehicle} axle {axle}" for vehicle, axle in run.axles]
+
+
 def plain(value: object) -> Any:
     """The value in lists, dictionaries, numbers and text; NaN as None, infinity as text."""
     if isinstance(value, Mapping):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, Final, TypeAlias, TypeVar
 
 from spanwise._checks import numbers, shown
@@ -72,6 +72,22 @@ def vehicle_of(table: Table, elsewhere: Home) -> AnyVehicle:
         raise ValueError(f"{error}; or {others}; or name a preset: {', '.join(PRESETS)}") from error
     axles = _each("axles", table["axles"], "vehicle.axles", _plain(Axle, AXLE), elsewhere)
     return Vehicle(**{**table, "axles": axles})
+
+
+def table_of(vehicle: AnyVehicle) -> dict[str, Any]:
+    """What `vehicle_of` makes this vehicle of; all that is None or empty is left out."""
+    table: dict[str, Any] = _without_nothing(asdict(vehicle))
+    if isinstance(vehicle, Vehicle) and vehicle.bodies:
+        return {"bodies": table["bodies"]}
+    return table
+
+
+def _without_nothing(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {
+            key: _without_nothing(each) for key, each in value.items() if each not in (None, ())
+        }
+    return [*map(_without_nothing, value)] if isinstance(value, list | tuple) else value
 
 
 def _beside(key: str, kind: str) -> str:

@@ -1,7 +1,8 @@
-"""A case file: bridge, vehicle and crossing in TOML."""
+"""A case file: bridge, vehicles, road and crossing in TOML."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -11,11 +12,16 @@ from typing import Any, Final, TypeAlias
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import shown
 from spanwise._keys import Keys, suggestion
+from spanwise._traffictable import OWN, passage_of, road_in
 from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
+from spanwise.roads import Road
+from spanwise.roads.table import KINDS as ROADS
 from spanwise.run import Run
+from spanwise.traffic import KINDS as DRIVES
+from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
 __all__ = ["Case", "CaseError"]
@@ -23,32 +29,50 @@ __all__ = ["Case", "CaseError"]
 Table: TypeAlias = Mapping[str, Any]
 
 BRIDGE: Final = Keys.of(Bridge)
-CROSSING: Final = Keys.of(cross)
-HOMES: Final = {"bridge": BRIDGE, "crossing": CROSSING}
-TABLES: Final = ("bridge", "vehicle", "crossing")
+#: The road has a table of its own.
+CROSSING: Final = Keys(tuple(key for key in Keys.of(cross).allowed if key != "road"))
+#: Tables, as they are written.
+TABLES: Final = {
+    "bridge": "[bridge]",
+    "vehicle": "[vehicle]",
+    "traffic": "[[traffic]]",
+    "road": "[road]",
+    "crossing": "[crossing]",
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A bridge, a vehicle and how it crosses, as a case file describes them.
+    """A bridge, what crosses it and how, as a case file describes it.
 
-    The file has three tables. The keys of ``[bridge]`` are the arguments of `Bridge`; those of
-    ``[crossing]`` the keyword arguments of `cross`; those of ``[vehicle]`` the arguments of
-    `Vehicle`, with one table ``[[vehicle.axles]]`` for each `Axle`, front first; or for a vehicle
-    of several bodies one table ``[[vehicle.bodies]]`` for each `Body`, with its
-    ``[[vehicle.bodies.axles]]``, ``[vehicle.bodies.hinge]`` and ``[[vehicle.bodies.springs]]``; or
-    the arguments of `ForceTrain` or of `MovingMasses`. Or ``[vehicle]`` names a ``preset``, and
-    beside it what is to be different: of a vehicle of one body any key but the axles, of some
-    trains a spacing, and ``initial_friction``, a list of one force [N] for each axle. Units are SI.
+    The keys of ``[bridge]`` are the arguments of `Bridge`; those of ``[crossing]`` the keyword
+    arguments of `cross`, a ``drive`` with numbers as ``{ kind = "braking", deceleration = 4.0 }``.
+
+    The keys of ``[vehicle]`` are the arguments of `Vehicle`, with one table ``[[vehicle.axles]]``
+    for each `Axle`, front first; or for a vehicle of several bodies one table
+    ``[[vehicle.bodies]]`` for each `Body`, with its ``[[vehicle.bodies.axles]]``,
+    ``[vehicle.bodies.hinge]`` and ``[[vehicle.bodies.springs]]``; or the arguments of `ForceTrain`
+    or of `MovingMasses`. Or ``[vehicle]`` names a ``preset``, and beside it what is to be
+    different: of a vehicle of one body any key but the axles, of some trains a spacing, and
+    ``initial_friction``, a list of one force [N] for each axle.
+
+    In place of ``[vehicle]`` one table ``[[traffic]]`` for each of several vehicles has the
+    arguments of `Passage`: a ``vehicle`` with the keys above, and how that one crosses.
+
+    ``[road]``, or ``[[road]]`` for each part of a sum, is a table of `roads.from_table`; without,
+    the road is smooth. Files that it names are looked for from the folder of the case file on.
+    Units are SI.
 
     Attributes
     ----------
     bridge : Bridge
         The bridge.
-    vehicle : Vehicle or ForceTrain or MovingMasses
-        The vehicle.
+    passages : tuple of Passage
+        The vehicles and how each of them crosses.
     crossing : dict
-        Keyword arguments of `cross`.
+        Keyword arguments of `cross`, but the road.
+    road : Road or None
+        The road, if the case has one.
     source : str
         Name of the file, for messages.
 
@@ -61,6 +85,9 @@ class Case:
     ... mass = 6037.6             # kg/m
     ... [vehicle]
     ... preset = "kishan-1973"
+    ... [road]
+    ... kind = "iso-8608"
+    ... class = "B"
     ... [crossing]
     ... speed = 22.86             # m/s
     ... ''')
@@ -68,8 +95,9 @@ class Case:
     """
 
     bridge: Bridge
-    vehicle: AnyVehicle
+    passages: tuple[Passage, ...]
     crossing: dict[str, Any] = field(default_factory=dict)
+    road: Road | None = None
     source: str = "case"
 
     @classmethod
@@ -79,32 +107,81 @@ class Case:
         Raises
         ------
         OSError
-            If there is no such file, or it cannot be read.
+            If there is no such file, or it or one that it names cannot be read.
         CaseError
             A ValueError: if it is not a case file, or a value in it is not allowed.
         """
-        return cls.parse(read_text(Path(path)), source=str(path))
+        path = Path(path)
+        return cls.parse(read_text(path), source=str(path), folder=path.parent)
 
     @classmethod
-    def parse(cls, text: str, source: str = "case") -> Case:
-        """A case from the text of a case file; `source` is its name in messages.
+    def parse(cls, text: str, source: str = "case", folder: str | Path = ".") -> Case:
+        """A case from the text of a case file.
+
+        Parameters
+        ----------
+        text : str
+            The text.
+        source : str, optional
+            Its name in messages.
+        folder : str or Path, optional
+            Where files that it names are looked for.
 
         Raises
         ------
+        OSError
+            If a file that it names cannot be read.
         CaseError
             A ValueError: if the text is not a case, or a value in it is not allowed.
         """
-        tables = parse_toml(text, source)
+        return cls._of(parse_toml(text, source), source, Path(folder))
+
+    @classmethod
+    def from_dict(cls, tables: Table, source: str = "case", folder: str | Path = ".") -> Case:
+        """A case from the tables of a case file, such as the ``settings`` of a report.
+
+        Parameters
+        ----------
+        tables : mapping
+            The tables by name; ``"inf"`` is infinity, which JSON does not know.
+        source, folder
+            As for `parse`.
+
+        Raises
+        ------
+        OSError
+            If a file that it names cannot be read.
+        CaseError
+            A ValueError: if a table, key or value is not allowed.
+        """
+        return cls._of(_with_infinity(tables), source, Path(folder))
+
+    @classmethod
+    def _of(cls, tables: Table, source: str, folder: Path) -> Case:
         with _errors_in(source):
             _check_tables(tables)
         with _errors_in(f"{source}, [bridge]"):
             bridge = _bridge(tables["bridge"])
-        with _errors_in(f"{source}, [vehicle]"):
-            vehicle = vehicle_of(tables["vehicle"], _home)
+        road = None
+        if "road" in tables:
+            with _errors_in(f"{source}, [road]"):
+                road = road_in(tables["road"], folder, _home)
+        if "vehicle" in tables:
+            with _errors_in(f"{source}, [vehicle]"):
+                passages = [Passage(vehicle=vehicle_of(tables["vehicle"], _home))]
+        else:
+            passages = []
+            for k, table in enumerate(tables["traffic"]):
+                with _errors_in(f"{source}, traffic[{k}]"):
+                    passages.append(passage_of(table, folder, _home))
         with _errors_in(f"{source}, [crossing]"):
             CROSSING.check_known(tables["crossing"], _home)
-            CROSSING.check_complete(tables["crossing"])
-        return cls(bridge, vehicle, tables["crossing"], source)
+        return cls(bridge, tuple(passages), dict(tables["crossing"]), road, source)
+
+    @property
+    def vehicle(self) -> AnyVehicle:
+        """The first vehicle."""
+        return self.passages[0].vehicle
 
     def run(self, **overrides: Any) -> Run:
         """The crossing, with keyword arguments of `cross` that replace those of the file.
@@ -114,10 +191,11 @@ class Case:
         CaseError
             A ValueError: if a value is not allowed.
         RuntimeError
-            If the numerics fail, or under constant traction the vehicle comes to rest.
+            If the numerics fail, or under constant traction a vehicle comes to rest.
         """
+        given = {"road": self.road, **self.crossing, **overrides}
         with _errors_in(self.source if overrides else f"{self.source}, [crossing]"):
-            return cross(self.bridge, self.vehicle, **{**self.crossing, **overrides})
+            return cross(self.bridge, self.passages, **given)
 
 
 @contextmanager
@@ -129,28 +207,53 @@ def _errors_in(place: str) -> Iterator[None]:
         raise CaseError(f"{place}: {error}") from error
 
 
+def _with_infinity(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _with_infinity(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [*map(_with_infinity, value)]
+    return math.inf if isinstance(value, str) and value == "inf" else value
+
+
 def _check_tables(tables: Table) -> None:
     for name, table in tables.items():
         if name not in TABLES:
             hint = _home(name) or suggestion(name, TABLES)
             raise ValueError(f"unknown table or key {name!r}{hint}; allowed: {_list(TABLES)}")
-        if not isinstance(table, dict):
-            raise ValueError(f"{name} = {shown(table)}: must be a table, [{name}]")
-    missing = [name for name in TABLES if name not in tables]
+        several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
+        if name == "traffic":
+            if not several:
+                raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
+        elif not isinstance(table, Mapping) and not (name == "road" and several):
+            raise ValueError(f"{name} = {shown(table)}: must be a table, {TABLES[name]}")
+    if "vehicle" in tables and "traffic" in tables:
+        raise ValueError("[vehicle] and [[traffic]]: give one of the two")
+    missing = [name for name in ("bridge", "vehicle", "crossing") if name not in tables]
+    if "traffic" in tables:
+        missing.remove("vehicle")
     if missing:
-        raise ValueError(f"missing {_list(missing)}; a case has {_list(TABLES)}")
+        needed = "a case has [bridge], [vehicle] or [[traffic]], and [crossing]"
+        raise ValueError(f"missing {_list(missing)}; {needed}")
 
 
 def _home(key: str) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
-    homes = [f"[{name}]" for name, keys in HOMES.items() if key in keys.allowed]
-    if place := vehicle_home(key):
-        homes.insert(1 if "[bridge]" in homes else 0, place)
-    return f" (belongs in {', '.join(homes)})" if homes else ""
+    homes = {
+        "[bridge]": key in BRIDGE.allowed,
+        vehicle_home(key): vehicle_home(key) != "",
+        "each [[traffic]]": key in OWN,
+        "[road]": key == "kind" or any(key in keys.allowed for _, keys in ROADS.values()),
+        "[crossing]": key in CROSSING.allowed,
+        "a drive": any(key in Keys.of(kind).allowed for kind in DRIVES.values()),
+    }
+    found = [home for home, is_there in homes.items() if is_there]
+    if key in TABLES and key != "vehicle":
+        return f" (a table of its own, {TABLES[key]})"
+    return f" (belongs in {', '.join(found)})" if found else ""
 
 
 def _list(tables: Iterable[str]) -> str:
-    return ", ".join(f"[{name}]" for name in tables)
+    return ", ".join(TABLES[name] for name in tables)
 
 
 def _bridge(table: Table) -> Bridge:

@@ -1,4 +1,4 @@
-"""The command line: ``spanwise cross CASE.toml``, ``spanwise vehicles``."""
+"""The command line: ``spanwise cross CASE.toml``, ``spanwise vehicles``, ``spanwise road``."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._figures import figure_files
 from spanwise._files import write_files
+from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
-from spanwise.summary import summary
+from spanwise.roads import ISO8608, Profile, Road, Smooth
+from spanwise.summary import roughness, summary
 
 BAD_INPUT, FAILURE, INTERRUPTED = 2, 1, 130
 
@@ -56,15 +58,29 @@ def _parser() -> _Parser:
     cross = commands.add_parser(
         "cross",
         allow_abbrev=False,
-        help="drive a vehicle over a bridge once",
-        description="Drive a vehicle over a bridge once and print the largest responses and the "
-        "impact factors. Everything is computed before any file is written.",
+        help="drive a vehicle, or several, over a bridge once",
+        description="Drive a vehicle, or several, over a bridge once and print the largest "
+        "responses and the impact factors. Everything is computed before any file is written.",
     )
     cross.add_argument(
-        "case", type=Path, metavar="CASE.toml", help="bridge, vehicle and crossing, in SI units"
+        "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
     )
     cross.add_argument(
         "--modes", type=int, metavar="N", help="number of modes, not that of the case"
+    )
+    cross.add_argument(
+        "--speed",
+        type=float,
+        metavar="V",
+        help="speed at the start in m/s, not that of the case; of all vehicles without their own",
+    )
+    cross.add_argument(
+        "--road",
+        metavar="CLASS",
+        help="a random road of this class of ISO 8608, A to H, not that of the case",
+    )
+    cross.add_argument(
+        "--seed", type=int, metavar="N", help="seed of the random road, not that of the case"
     )
     cross.add_argument(
         "--json",
@@ -90,7 +106,33 @@ def _parser() -> _Parser:
     )
     vehicles.add_argument("preset", nargs="?", metavar="PRESET", help="the one to show")
     vehicles.set_defaults(work=_vehicles)
+    road = commands.add_parser(
+        "road",
+        allow_abbrev=False,
+        help="tell how rough a road is",
+        description="Tell how rough the road of a case, or a measured one, is: its international "
+        "roughness index, and its class after ISO 8608 by a line fitted to its spectrum.",
+    )
+    road.add_argument(
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="a case with a [road], or a CSV file with x and elevation in metres in its first two "
+        "columns",
+    )
+    road.add_argument("--start", type=float, metavar="X", help="where the section begins [m]")
+    road.add_argument("--end", type=float, metavar="X", help="where it ends [m]")
+    road.set_defaults(work=_road)
     return parser
+
+
+def _road(options: argparse.Namespace) -> str:
+    if options.file.suffix.lower() == ".toml":
+        case = Case.read(options.file)
+        road: Road = Smooth() if case.road is None else case.road
+    else:
+        road = Profile.read_csv(options.file)
+    return roughness(road, options.start, options.end) + "\n"
 
 
 def _vehicles(options: argparse.Namespace) -> str:
@@ -100,7 +142,7 @@ def _vehicles(options: argparse.Namespace) -> str:
 def _cross(options: argparse.Namespace) -> str:
     """Computes the crossing, writes the files asked for, and gives the text to print."""
     case = Case.read(options.case)
-    run = case.run(**({} if options.modes is None else {"modes": options.modes}))
+    run = case.run(**_overrides(options, case))
     files: list[tuple[Path, Iterable[bytes]]] = []
     folders = []
     text = summary(run) + "\n"
@@ -116,6 +158,25 @@ def _cross(options: argparse.Namespace) -> str:
         files += [(options.plot / name, [content]) for name, content in figure_files(run)]
     write_files(files, folders)
     return text
+
+
+def _overrides(options: argparse.Namespace, case: Case) -> dict[str, object]:
+    """What the command says in place of the case."""
+    given: dict[str, object] = {
+        key: getattr(options, key)
+        for key in ("modes", "speed")
+        if getattr(options, key) is not None
+    }
+    if options.road is not None:
+        given["road"] = ISO8608(options.road, seed=options.seed or 0)
+    elif options.seed is not None:
+        road = Smooth() if case.road is None else case.road
+        given["road"] = reseeded(road, options.seed)
+        if not is_random(road):
+            raise ValueError(
+                f"--seed {options.seed}: {options.case} has no random [road]; add one, or --road"
+            )
+    return given
 
 
 def _say(text: str) -> None:

@@ -226,4 +226,3 @@ def _core_passage(
         lane,
         (passage.road or road)._core,
     )
-

@@ -11,7 +11,9 @@ from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._extras import require
 from spanwise._files import write_files
-from spanwise._values import envelope, history, places, plain, quantities
+from spanwise._traffictable import is_alone, passage_table
+from spanwise._values import envelope, history, places, plain, quantities, stop
+from spanwise._vehicletable import table_of
 from spanwise.run import Quantity, Run
 from spanwise.table import COLUMNS
 
@@ -29,13 +31,16 @@ def as_dict(run: Run) -> dict[str, Any]:
         "version": __version__,
         "settings": {
             "bridge": run.bridge.arguments,
-            "vehicle": asdict(run.truck),
+            **_traffic(run),
+            "road": run.road.arguments,
             "crossing": {**run.settings, "sections": run.sections},
         },
         "sections": run.sections,
         "supports": run.supports,
         "frequencies": run.frequencies,
         "final_speed": run.final_speed,
+        "vehicles": [_vehicle(run, k) for k in range(len(run.passages))],
+        "lift_offs": [asdict(each) for each in run.lift_offs],
         "steps": run.steps,
         "impact_factors": _impact_factors(run),
         **{quantity: envelope(run, quantity) for quantity in quantities(run)},
@@ -66,9 +71,10 @@ def write_json(run: Run, path: str | Path) -> None:
 def write_csv(run: Run, directory: str | Path) -> None:
     """Write impact factors, extremes and histories into a folder, which is made if there is none.
 
-    The files are ``impact_factors.csv``, ``envelope_<quantity>.csv``, ``history_<quantity>.csv``
-    and ``history_vehicle.csv``. Their first row names the columns and units; numbers have a decimal
-    point and all their digits.
+    The files are ``impact_factors.csv``, ``lift_offs.csv``, ``envelope_<quantity>.csv``,
+    ``history_<quantity>.csv`` and ``history_vehicle.csv``, or ``history_vehicle_<number>.csv`` for
+    each of several vehicles. Axles are numbered through all vehicles. The first row of a file
+    names the columns and units; numbers have a decimal point and all their digits.
 
     Raises
     ------
@@ -95,6 +101,26 @@ def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
     index = pandas.Index(run.time, name="time [s]")
     frame: pd.DataFrame = pandas.DataFrame(values, index=index, columns=columns)
     return frame
+
+
+def _traffic(run: Run) -> dict[str, object]:
+    """The tables of the vehicles: one alone, or several."""
+    if is_alone(run.passages):
+        return {"vehicle": table_of(run.truck)}
+    return {"traffic": [passage_table(each) for each in run.passages]}
+
+
+def _vehicle(run: Run, vehicle: int) -> dict[str, object]:
+    own = [k for k, (number, _) in enumerate(run.axles) if number == vehicle + 1]
+    stopped = stop(run, vehicle)
+    return {
+        "static_axle_loads": run.static_axle_loads[own],
+        "final_speed": run.vehicles[vehicle].speed[-1],
+        "stopped": stopped and {"time": stopped[0], "axle_positions": stopped[1]},
+        "off_road": {
+            name: getattr(run.off_road, name)[own] for name in ("count", "total", "longest")
+        },
+    }
 
 
 def _impact_factors(run: Run) -> dict[str, object]:

@@ -270,6 +270,25 @@ class LiftOff:
 
 
 @dataclass(frozen=True, eq=False)
+class OffRoad:
+    """How often and how long wheels were off the road, axle by axle.
+
+    Attributes
+    ----------
+    count : ndarray of int, shape (axle,)
+        How many times.
+    total : ndarray, shape (axle,)
+        How long in all [s].
+    longest : ndarray, shape (axle,)
+        How long at most at a time [s].
+    """
+
+    count: NDArray[np.int64]
+    total: Array
+    longest: Array
+
+
+@dataclass(frozen=True, eq=False)
 class ModalMotion:
     """Modal coordinates during the crossing, for modes of unit modal mass.
 
@@ -312,7 +331,11 @@ class Run(Responses):
     final_speed : float
         Speed of the first vehicle at the end [m/s].
     lift_offs : tuple of LiftOff
-        Every time a wheel was off the road.
+        Every time a wheel was off the road, on the approach too.
+    off_road : OffRoad
+        The same in numbers for each axle.
+    axles : list of tuple of int
+        Numbers of vehicle and axle, from 1, of each column by axle.
     steps : int
         Number of time steps.
     """
@@ -338,6 +361,28 @@ class Run(Responses):
         self.lift_offs = tuple(LiftOff(axle + 1, *span) for axle, *span in core.lift_offs)
         self.steps: int = core.steps
 
+    @property
+    def axles(self) -> list[tuple[int, int]]:
+        """Numbers of vehicle and axle in it, from 1, of each column by axle."""
+        return [
+            (number_, axle + 1)
+            for number_, passage in enumerate(self.passages, 1)
+            for axle in range(len(passage.vehicle.axle_positions))
+        ]
+
+    @cached_property
+    def off_road(self) -> OffRoad:
+        """How often and how long wheels were off the road, axle by axle."""
+        by_axle = [
+            [each.duration for each in self.lift_offs if each.axle == axle]
+            for axle in range(1, len(self.axles) + 1)
+        ]
+        return OffRoad(
+            count=np.array([len(each) for each in by_axle], dtype=np.int64),
+            total=np.array([sum(each) for each in by_axle], dtype=np.float64),
+            longest=np.array([max(each, default=0.0) for each in by_axle]),
+        )
+
     @cached_property
     def time(self) -> Array:
         """Time since the front axle was at the start of the approach [s], shape (time,)."""
@@ -351,8 +396,13 @@ class Run(Responses):
     @cached_property
     def vehicles(self) -> tuple[VehicleMotion, ...]:
         """The motion of each vehicle."""
-        kinds = ("positions", "elevations", "suspension_shortenings", "friction")
-        by_axle = [self._core.states(kind) for kind in kinds]
+        by_axle = {
+            "axle_positions": self._core.states("positions"),
+            **{
+                k: self._core.states(k)
+                for k in ("elevations", "suspension_shortenings", "friction")
+            },
+        }
         motions, first = [], 0
         for number_, (passage, stopped) in enumerate(
             zip(self.passages, self._core.stopped, strict=True)
@@ -365,11 +415,14 @@ class Run(Responses):
             first += axles
             motions.append(
                 VehicleMotion(
-                    tuple(BodyMotion(*bodies[at : at + 2]) for at in range(0, len(bodies), 2)),
-                    tuple(hops),
-                    *columns[-3:],
-                    *(_frozen(np.ascontiguousarray(each[:, own])) for each in by_axle),
-                    stopped,
+                    bodies=tuple(map(BodyMotion, bodies[::2], bodies[1::2])),
+                    hops=tuple(hops),
+                    **dict(zip(("travel", "speed", "acceleration"), columns[-3:], strict=True)),
+                    **{
+                        kind: _frozen(np.ascontiguousarray(values[:, own]))
+                        for kind, values in by_axle.items()
+                    },
+                    stopped=stopped,
                 )
             )
         return tuple(motions)
@@ -463,8 +516,10 @@ class Run(Responses):
         Keys: ``version``; ``sections``, ``supports`` [m], ``frequencies`` [Hz]; for each quantity
         the lists ``max``, ``min``, ``static_max``, ``static_min``, each with its ``..._time`` [s],
         ``..._position`` [m] and ``..._partner`` (see `Extremes`); ``impact_factors``;
-        ``final_speed`` [m/s]; ``steps``; ``settings``, of which ``bridge``, ``vehicle`` and
-        ``crossing`` are the arguments that compute the run again.
+        ``final_speed`` of the first vehicle [m/s]; ``vehicles``, for each its static axle loads
+        [N], ``final_speed``, ``stopped`` (time [s] and ``axle_positions`` [m], or None) and
+        ``off_road`` (by axle); ``lift_offs``; ``steps``; ``settings``, the tables of a case that
+        computes the run again: ``Case.from_dict(settings).run()``.
         """
         from spanwise.report import as_dict
 

@@ -2,47 +2,165 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._traffictable import is_alone
+from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
+from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.run import Extremes, Run
 from spanwise.table import factor_text
+from spanwise.traffic import Passage, plain_drive
+from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
 
 
 def summary(run: Run) -> str:
-    """Bridge, vehicle and settings; the governing responses; the impact factors."""
+    """Bridge, vehicles, road and settings; the governing responses; the impact factors."""
     return "\n".join([*_description(run), "", *_governing(run), "", str(run.impact_factors)])
 
 
-def _description(run: Run) -> list[str]:
-    bridge, truck, used = run.bridge, run.truck, run.settings
+def roughness(road: Road, start: float | None = None, end: float | None = None) -> str:
+    """How rough a road is from `start` to `end` [m]; by default all that is known of it.
+
+    Of a random road that is one period, of single features 100 m from the start of the bridge.
+    """
+    first, last = road.ends
+    if not np.isfinite(first) or not np.isfinite(last):
+        period = road.repeats_after
+        first, last = 0.0, period if np.isfinite(period) else 100.0
+    start, end = first if start is None else start, last if end is None else end
+    index = road.iri(start, end)
+    lines = [
+        f"road      {_road(road)}",
+        f"section   {start:g} to {end:g} m",
+        f"IRI       {index:.2f} m/km",
+    ]
+    try:
+        found = road.iso_class(start, end)
+    except ValueError as error:
+        return "\n".join([*lines, f"ISO 8608  {error}"])
+    limits = f"{found.lower:g} to {found.upper:g}"
+    return "\n".join(
+        [*lines, f"ISO 8608  class {found.letter} ({limits} m3), fitted G_d(n0) {found.G:.4g} m3"]
+    )
+
+
+def _description(run: Run) -> Iterator[str]:
+    bridge, used = run.bridge, run.settings
     held = ", ".join(f"{kind} at {x:g} m" for x, kind in bridge.supports)
     rigidities = _rigidity(bridge)
     ratios = np.asarray(used["damping"])
     damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
-    # A train of forces has none.
-    mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
-    return [
-        f"bridge    {bridge.length:g} m, {held}",
+    yield f"bridge    {bridge.length:g} m, {held}"
+    yield (
         f"          {rigidities}{len(bridge.masses)} moving masses, "
-        f"{bridge.masses.sum() / 1000.0:.4g} t",
-        f"vehicle   {mass}static axle loads "
-        f"{_list(run.static_axle_loads / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from first to "
-        "last axle",
-        *_frequencies(truck),
-        f"modes     {len(run.frequencies)}: {_list(run.frequencies, '.3f')} Hz; damping {damping}",
-        f"crossing  {used['speed']:g} m/s, {used['drive']}, {run.final_speed:.6g} m/s at the end; "
-        f"approach {used['approach']:g} m, tail {used['tail']:g} s",
-        f"          {run.steps} steps of {used['step']:.4g} s, beta {used['beta']:.4g}; "
-        f"recovery by {used['recovery']}",
-    ]
+        f"{bridge.masses.sum() / 1000.0:.4g} t"
+    )
+    yield f"modes     {len(run.frequencies)}: {_list(run.frequencies, '.3f')} Hz; damping {damping}"
+    for k, passage in enumerate(run.passages):
+        yield from _vehicle(run, k, passage)
+    yield f"road      {_road(run.road)}"
+    ramp = f" ({used['ramp']:g} m of it to fade in the road)" if used["ramp"] else ""
+    yield (
+        f"crossing  approach {used['approach']:g} m{ramp}, tail {used['tail']:g} s; {run.steps} "
+        f"steps of {used['step']:.4g} s, beta {used['beta']:.4g}"
+    )
+    yield f"          recovery by {used['recovery']}"
+    for k in range(len(run.passages)):
+        if (stopped := stop(run, k)) is not None:
+            yield _standing(run, k, *stopped)
+    yield from _off_road(run)
+
+
+def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
+    """What the vehicle is, and how it crosses."""
+    truck, motion = passage.vehicle, run.vehicles[number]
+    own = [k for k, (vehicle, _) in enumerate(run.axles) if vehicle == number + 1]
+    name = "vehicle" if len(run.passages) == 1 else f"vehicle {number + 1}"
+    bodies = f"{len(truck.bodies)} bodies, " if isinstance(truck, Vehicle) and truck.bodies else ""
+    # A train of forces has no mass.
+    mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
+    yield (
+        f"{name:<10}{bodies}{mass}static axle loads "
+        f"{_list(run.static_axle_loads[own] / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from "
+        "first to last axle"
+    )
+    if isinstance(truck, Vehicle) and any(axle.mass > 0.0 for axle in truck.axles):
+        masses = _list((axle.mass / 1000.0 for axle in truck.axles), ".4g")
+        yield f"          unsprung masses {masses} t, included above"
+    yield from _frequencies(truck)
+    drive = run.settings["drive"] if passage.drive is None else plain_drive(passage.drive)
+    way = [f"{motion.speed[0]:g} m/s", _drive(drive)]
+    way.append(f"{motion.speed[-1]:.6g} m/s at the end")
+    if not is_alone(run.passages):
+        lane = int(passage.direction == "left") if passage.lane is None else passage.lane
+        way[:0] = [f"to the {passage.direction} in lane {lane}", f"enters at {passage.entry:g} s"]
+    yield f"          {', '.join(way)}"
+    if passage.road is not None:
+        yield f"          on a road of its own: {_road(passage.road)}"
+
+
+def _drive(drive: object) -> str:
+    if not isinstance(drive, Mapping):
+        return str(drive)
+    given = {key: value for key, value in drive.items() if key != "kind"}
+    if drive["kind"] == "acceleration":
+        return f"acceleration {given['acceleration']:g} m/s2"
+    if drive["kind"] == "speeds":
+        return f"{len(given['times'])} speeds in time"
+    return (
+        f"braking by {given['deceleration']:g} m/s2 from {given['start']:g} m after its end of the "
+        f"bridge, friction {given['friction']:g}"
+    )
+
+
+def _road(road: Road) -> str:
+    """Kind, roughness, seed and contact patch; of a sum those of every part."""
+    if isinstance(road, Sum):
+        return " + ".join(map(_road, road.parts))
+    words = [road.kind]
+    for key in ("at", "start", "end"):
+        if hasattr(road, key):
+            words.append(f"{key} {getattr(road, key):g} m")
+    if isinstance(road, ISO8608):
+        words[0] += f" class {road.road_class}" if road.road_class else ""
+        words.append(f"G_d(n0) {road.G:.4g} m3")
+        words.append(f"seed {road.seed}" + (f" sample {road.sample}" if road.sample else ""))
+    if isinstance(road, Profile):
+        words.append(f"{len(road.x)} points from {road.x[0]:g} to {road.x[-1]:g} m")
+    patch = getattr(road, "contact_patch", None)
+    return ", ".join(words if patch is None else [*words, f"contact patch {patch:g} m"])
+
+
+def _standing(run: Run, number: int, time: float, at: Array) -> str:
+    name = "the vehicle" if len(run.passages) == 1 else f"vehicle {number + 1}"
+    on = "on the bridge" if ((at >= 0.0) & (at <= run.bridge.length)).any() else "off the bridge"
+    where = f"x = {at[0]:.3f} m (front axle)"
+    return f"          {name} stops {on} at t = {time:.3f} s, {where}, and stays"
+
+
+def _off_road(run: Run) -> Iterator[str]:
+    """How often and how long wheels leave the road."""
+    off = run.off_road
+    if not run.settings["lift_off"]:
+        yield "wheels    held to the road, in tension if need be"
+    elif not off.count.any():
+        yield "wheels    never leave the road"
+    else:
+        times = f"{off.count.sum()} time{'s' if off.count.sum() > 1 else ''}"
+        yield f"wheels    leave the road {times}, {off.total.sum():.3f} s in all:"
+        for name, count, total, longest in zip(
+            axle_names(run), off.count, off.total, off.longest, strict=True
+        ):
+            if count > 0:
+                yield f"          {name}: {count}, {total:.3f} s in all, {longest:.3f} s at most"
 
 
 def _frequencies(truck: AnyVehicle) -> Iterator[str]:
@@ -54,16 +172,18 @@ def _frequencies(truck: AnyVehicle) -> Iterator[str]:
     holding, sliding = states.values()
     if len(holding) == 0:
         return
-    if len(holding) <= 2:
+    if np.array_equal(holding, sliding):
+        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
+    elif len(holding) <= 2:
         yield (
             f"          on rigid ground {_list(holding, '.3f')} Hz while friction holds, "
             f"{_list(sliding, '.3f')} Hz sliding"
         )
-    elif np.array_equal(holding, sliding):
-        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
     else:
         for state, found in states.items():
             yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"
+
+
 def _rigidity(bridge: Bridge) -> str:
     """EI: its values, or its range where there are many; nothing if it is unknown."""
     if not bridge.described:
@@ -84,7 +204,7 @@ def _governing(run: Run) -> list[str]:
     loads = run.envelope("axle_loads")
     sections = [f"x = {x:.3f} m" for x in run.sections]
     supports = [f"x = {x:.3f} m" for x in run.supports]
-    axles = [f"axle {k}" for k in range(1, len(run.static_axle_loads) + 1)]
+    axles = [name.replace("vehicle", "veh.") for name in axle_names(run)]
     most = _larger(shear.max, shear.min)
     static = _larger(shear.static_max, shear.static_min)
     return [

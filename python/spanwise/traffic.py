@@ -113,8 +113,11 @@ def drive_of(value: object) -> Drive:
             raise ValueError(f"drive kind = {shown(kind)}: must be one of {', '.join(KINDS)}{near}")
         table = {key: each for key, each in value.items() if key != "kind"}
         keys = Keys.of(KINDS[kind])
-        keys.check_known(table, lambda _: "")
-        keys.check_complete(table)
+        try:
+            keys.check_known(table, lambda _: "")
+            keys.check_complete(table)
+        except ValueError as error:
+            raise ValueError(f"drive of kind {kind}: {error}") from None
         return KINDS[kind](**table)
     try:
         return word("drive", value, *get_args(Plain))  # type: ignore[return-value]
@@ -174,7 +177,9 @@ class Passage:
             object.__setattr__(self, "drive", drive_of(self.drive))
         object.__setattr__(self, "entry", number("entry", self.entry))
         word("direction", self.direction, *get_args(Direction))
-        if self.lane is not None and (isinstance(self.lane, bool) or not isinstance(self.lane, int)):
+        if self.lane is not None and (
+            isinstance(self.lane, bool) or not isinstance(self.lane, int)
+        ):
             raise ValueError(f"lane = {shown(self.lane)}: must be a whole number")
 
 

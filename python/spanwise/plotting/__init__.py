@@ -1,4 +1,4 @@
-"""Figures of bridges, vehicles and runs, drawn with matplotlib (the extra ``spanwise[plot]``).
+"""Figures of bridges, vehicles, roads and runs, by matplotlib (the extra ``spanwise[plot]``).
 
 Every method returns a `matplotlib.figure.Figure` that belongs to no window: save it with
 ``figure.savefig("name.svg")``, or leave it as the last line of a notebook cell.
@@ -6,11 +6,13 @@ Every method returns a `matplotlib.figure.Figure` that belongs to no window: sav
 
 from spanwise.plotting.bridge import BridgePlot
 from spanwise.plotting.comparison import compare_convergence, compare_impact_factors
+from spanwise.plotting.road import RoadPlot
 from spanwise.plotting.run import RunPlot
 from spanwise.plotting.vehicle import VehiclePlot
 
 __all__ = [
     "BridgePlot",
+    "RoadPlot",
     "RunPlot",
     "VehiclePlot",
     "compare_convergence",

@@ -105,7 +105,7 @@ def _bars(
                 textcoords="offset points",
                 ha="center",
                 va="bottom" if up else "top",
-                fontsize=7.0,
+                fontsize=7.0 if len(low) <= 6 else 5.5,
             )
 
 
@@ -113,8 +113,9 @@ def _name_bars(ax: Axes, run: Run, quantity: str) -> None:
     letters = support_letters(run.bridge)
     supports = list(zip(letters, run.bridge.supports, strict=True))
     if quantity == "axle_loads":
-        names = [str(k) for k in range(1, len(run.static_axle_loads) + 1)]
-        ax.set_xlabel("Axle [number, front first]")
+        alone = len(run.passages) == 1
+        names = [str(axle) if alone else f"{vehicle}.{axle}" for vehicle, axle in run.axles]
+        ax.set_xlabel(f"Axle [{'' if alone else 'vehicle.'}number, front first]")
     else:
         names = [
             f"{letter}\n{metres(x)}"

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import number
+from spanwise._values import axle_names
 from spanwise.plotting.envelope import BY_SECTION, envelope_of
-from spanwise.plotting.style import metres
+from spanwise.plotting.style import LIFTED, metres
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +41,7 @@ def column(
             )
     x = float(envelope.x[index])
     if quantity == "axle_loads":
-        return index, f"axle {x:g}", "right"
+        return index, axle_names(run)[index], "right"
     if quantity == "shear":
         chosen: Side = side or ("left" if x >= run.bridge.length else "right")
         return index, f"just {chosen} of x = {metres(x)}", chosen
@@ -61,23 +62,35 @@ def histories(run: Run, quantity: str, index: int, side: Side) -> tuple[Array, A
     return of(run), of(run.static)
 
 
-def front_axle_on_top(ax: Axes, run: Run) -> None:
-    """A second axis: where the front axle is at that time."""
-    time, front = run.time, run.vehicle.axle_positions[:, 0]
+def front_axle_on_top(ax: Axes, run: Run, vehicle: int = 1) -> None:
+    """A second axis: where the front axle of a vehicle, counted from 1, is at that time."""
+    motion = run.vehicles[vehicle - 1]
+    to = 1.0 if run.passages[vehicle - 1].direction == "right" else -1.0
+    time, front = run.time, to * motion.axle_positions[:, 0]
     ax.set_xlim(time[0], time[-1])
     # Ticks just outside the axis are looked up too, so both go on far beyond their ends.
     beyond = 1e3 * (time[-1] - time[0])
-    speeds = run.vehicle.speed[[0, -1]]
+    speeds = motion.speed[[0, -1]]
     t = np.concatenate([[time[0] - beyond], time, [time[-1] + beyond]])
     x = np.concatenate([[front[0] - speeds[0] * beyond], front, [front[-1] + speeds[1] * beyond]])
+    # One that stands creeps on, so that there is a time to every place.
+    x = np.maximum.accumulate(x) + 1e-9 * (t - t[0])
 
     def position(when: ArrayLike) -> Array:
         found: Array = np.interp(np.asarray(when, dtype=np.float64), t, x)
-        return found
+        return to * found
 
     def instant(where: ArrayLike) -> Array:
-        found: Array = np.interp(np.asarray(where, dtype=np.float64), x, t)
+        found: Array = np.interp(to * np.asarray(where, dtype=np.float64), x, t)
         return found
 
     top = ax.secondary_xaxis("top", functions=(position, instant))
-    top.set_xlabel("Front axle at x [m]", fontsize=8.0)
+    which = "" if len(run.passages) == 1 else f" of vehicle {vehicle}"
+    top.set_xlabel(f"Front axle{which} at x [m]", fontsize=8.0)
+
+
+def mark_lift_offs(ax: Axes, run: Run, axle: int, *, label: bool = True) -> None:
+    """Bands over the times during which an axle, counted from 0, is off the road."""
+    for k, each in enumerate(each for each in run.lift_offs if each.axle == axle + 1):
+        name = "off the road" if label and k == 0 else None
+        ax.axvspan(each.start, each.end, color=LIFTED, linewidth=0.0, zorder=0.4, label=name)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import number
+from spanwise._checks import count, number
 from spanwise.plotting.bridge import draw_bridge
 from spanwise.plotting.envelope import BY_SECTION, draw_bars, draw_curves
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
-from spanwise.plotting.history import Side, column, front_axle_on_top, histories
+from spanwise.plotting.history import Side, column, front_axle_on_top, histories, mark_lift_offs
 from spanwise.plotting.style import (
     DYNAMIC,
     GREY,
@@ -23,19 +24,25 @@ from spanwise.plotting.style import (
     legend_above,
     measure_of,
     measure_on,
+    new_figure,
     styled,
     whole,
     zero_line,
 )
-from spanwise.plotting.vehicle import draw_vehicle, overhang
+from spanwise.plotting.vehicle import draw_vehicle, extent, top
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
     from spanwise.run import Quantity, Run
+    from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
+
+
+#: Of the heights of vehicles on a bridge.
+SCALE: Final = 0.55
 
 
 class RunPlot:
@@ -45,14 +52,21 @@ class RunPlot:
         self._run = run
 
     @styled
-    def model(self, front_axle: float | None = None, *, ax: Axes | None = None) -> Figure:
-        """The vehicle on the bridge, to scale along the bridge.
+    def model(
+        self,
+        front_axle: float | None = None,
+        *,
+        time: float | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """The vehicles on the bridge, to scale along the bridge; in a new figure lane by lane.
 
         Parameters
         ----------
         front_axle : float, optional
-            Where the front axle stands [m]; by default where the static axle loads bend the bridge
-            most.
+            Where the front axle stands [m], of a vehicle alone.
+        time : float, optional
+            When [s], in place of that; by default when the static axle loads bend the bridge most.
         ax : matplotlib.axes.Axes, optional
             Where to draw; by default in a new figure.
 
@@ -61,18 +75,42 @@ class RunPlot:
         matplotlib.figure.Figure
         """
         run = self._run
-        stands = _worst_position(run) if front_axle is None else number("front_axle", front_axle)
-        centre = stands - run.truck.axles[0].position
-        ax = axes_for(ax, height=2.1)
-        draw_bridge(ax, run.bridge, run.bridge.supports, above=70.0)
-        at, beyond = centre + run.truck.axle_positions, overhang(run.truck)
-        left, right = ax.get_xlim()
-        arrow = 0.08 * run.bridge.length
-        ax.set_xlim(min(left, at[-1] - 1.2 * beyond), max(right, at[0] + beyond + arrow))
-        for ends in ((ax.get_xlim()[0], 0.0), (run.bridge.length, ax.get_xlim()[1])):
-            ax.plot(ends, (0.0, 0.0), color=GREY, linewidth=0.8, zorder=1.0)
-        draw_vehicle(ax, run.truck, centre, scale=0.55)
-        return whole(ax)
+        if front_axle is not None and len(run.passages) > 1:
+            raise ValueError(f"front_axle = {front_axle!r}: of several vehicles give the time")
+        instant = _worst_time(run) if time is None else number("time", time)
+        stands = [
+            np.array([np.interp(instant, run.time, x) for x in motion.axle_positions.T])
+            for motion in run.vehicles
+        ]
+        if front_axle is not None:
+            stands[0] += number("front_axle", front_axle) - stands[0][0]
+        drawn = _drawn(run, stands)
+        above = max(70.0, *(SCALE * top(each.vehicle) + 13.0 for each in drawn))
+        height = 2.1 + (above - 70.0) / 72.0
+        lanes = sorted({each.lane for each in drawn})
+        panels: list[tuple[Axes, list[_Drawn]]] = []
+        if ax is not None or len(lanes) == 1:
+            panels.append((axes_for(ax, height=height), drawn))
+        else:
+            rows = new_figure(len(lanes) * height).subplots(len(lanes), 1, sharex=True)
+            for panel, lane in zip(rows, lanes, strict=True):
+                panel.set_title(f"lane {lane}", loc="left", fontsize=8.0)
+                panels.append((panel, [each for each in drawn if each.lane == lane]))
+        for panel, there in panels:
+            draw_bridge(panel, run.bridge, run.bridge.supports, above=above)
+            left, right = panel.get_xlim()
+            left, right = (
+                min([left, *(each.ends[0] for each in drawn)]),
+                max([right, *(each.ends[1] for each in drawn)]),
+            )
+            panel.set_xlim(left, right)
+            for road in ((left, 0.0), (run.bridge.length, right)):
+                panel.plot(road, (0.0, 0.0), color=GREY, linewidth=0.8, zorder=1.0)
+            for each in there:
+                draw_vehicle(panel, each.vehicle, each.centre, scale=SCALE, to=each.to)
+        for panel, _ in panels[:-1]:
+            panel.set_xlabel("")
+        return whole(panels[0][0])
 
     @styled
     def envelope(self, quantity: Quantity = "moment", *, ax: Axes | None = None) -> Figure:
@@ -162,6 +200,8 @@ class RunPlot:
         zero_line(ax)
         ax.plot(run.time, measure.factor * dynamic, label="dynamic", **DYNAMIC)
         ax.plot(run.time, measure.factor * static, label="static", **STATIC)
+        if quantity == "axle_loads":
+            mark_lift_offs(ax, run, index)
         ax.set_xlabel("Time [s]")
         ax.set_title(where, loc="right", fontsize=8.0)
         front_axle_on_top(ax, run)
@@ -170,11 +210,13 @@ class RunPlot:
         return whole(ax)
 
     @styled
-    def vehicle(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """Heave, pitch, axle loads and speed of the vehicle against time.
+    def vehicle(self, number: int = 1, *, figure: Figure | SubFigure | None = None) -> Figure:
+        """Motion, axle loads, road and speed of a vehicle against time; bands where wheels lift.
 
         Parameters
         ----------
+        number : int, optional
+            Number of the vehicle, from 1.
         figure : matplotlib.figure.Figure or SubFigure, optional
             Where to draw; by default a new figure.
 
@@ -182,47 +224,96 @@ class RunPlot:
         -------
         matplotlib.figure.Figure
         """
-        run, motion = self._run, self._run.vehicle
-        axles = len(run.static_axle_loads)
-        pitches, together = axles > 1, axles <= 2
-        count = 2 + pitches + (1 if together else axles)
-        figure = figure_for(figure, 1.0 + 1.05 * count)
-        panels = list(figure.subplots(count, 1, sharex=True))
-        heave, speed = panels[0], panels[-1]
-        _single(heave, run.time, 1e3 * motion.heave, "Heave,\ndown [mm]", downward=True)
+        run = self._run
+        chosen = count("number", number)
+        if not 1 <= chosen <= len(run.passages):
+            raise ValueError(f"number = {chosen}: must be 1 to {len(run.passages)}")
+        motion = run.vehicles[chosen - 1]
+        axles = [k for k, (vehicle, _) in enumerate(run.axles) if vehicle == chosen]
+        together = len(axles) <= 2
+        heaves = [1e3 * body.heave.displacement for body in motion.bodies]
+        pitches = [1e3 * body.pitch.displacement for body in motion.bodies] * (len(axles) > 1)
+        uneven = bool(motion.elevations.any())
+        rows = bool(heaves) + bool(pitches) + (1 if together else len(axles)) + uneven + 1
+        figure = figure_for(figure, 1.0 + 1.05 * rows)
+        panels = list(np.atleast_1d(figure.subplots(rows, 1, sharex=True)))
+        rest = iter(panels)
+        if heaves:
+            ax = next(rest)
+            _bodies(ax, run.time, heaves, "Heave,\ndown [mm]")
+            if len(heaves) > 1:
+                legend_above(ax, columns=len(heaves), clear=3.6)
         if pitches:
-            _single(
-                panels[1], run.time, 1e3 * motion.pitch, "Pitch, nose\ndown [mrad]", downward=True
-            )
-        loads = panels[1 + pitches : -1]
-        for k, static in enumerate(1e-3 * run.static_axle_loads):
-            ax, line = (loads[0], LINES[k]) if together else (loads[k], LINES[0])
-            zero_line(ax, at=static)
-            ax.plot(run.time, 1e-3 * run.axle_loads[:, k], label=f"axle {k + 1}", **line)
+            _bodies(next(rest), run.time, pitches, "Pitch, nose\ndown [mrad]")
+        loads = [next(rest)] * len(axles) if together else [next(rest) for _ in axles]
+        for k, (ax, axle) in enumerate(zip(loads, axles, strict=True)):
+            zero_line(ax, at=1e-3 * run.static_axle_loads[axle])
+            line = LINES[k] if together else LINES[0]
+            values = 1e-3 * run.axle_loads[:, axle]
+            ax.plot(run.time, values, label=f"axle {k + 1}", **line)
             ax.set_ylabel("Axle load\n[kN]" if together else f"Axle {k + 1}\n[kN]")
-        if pitches and together:
-            legend_above(loads[0], columns=2, clear=0.1)
+            mark_lift_offs(ax, run, axle, label=False)
+        if len(axles) > 1 and together:
+            legend_above(loads[0], columns=3, clear=0.1 if heaves else 3.6)
+        if uneven:
+            ax = next(rest)
+            _single(ax, run.time, 1e3 * motion.elevations[:, 0], "Road under\naxle 1 [mm]")
+            zero_line(ax)
+        speed = next(rest)
         _single(speed, run.time, motion.speed, "Speed\n[m/s]")
-        _not_narrower(speed, 1e-3 * float(motion.speed[0]))
-        speed.set_xlabel("Time [s]")
-        front_axle_on_top(heave, run)
+        _not_narrower(speed, 1e-3 * float(motion.speed.max()))
+        lifted = any(each.axle - 1 in axles for each in run.lift_offs)
+        speed.set_xlabel("Time [s]" + ("; bands: the wheel is off the road" if lifted else ""))
+        front_axle_on_top(panels[0], run, chosen)
         figure.align_ylabels(panels)
         return whole(figure)
 
 
-def _worst_position(run: Run) -> float:
+@dataclass(frozen=True)
+class _Drawn:
+    """A vehicle in a drawing: its lane, centre and direction, and the room that it takes [m]."""
+
+    vehicle: AnyVehicle
+    lane: int
+    centre: float
+    to: float
+    ends: tuple[float, float]
+
+
+def _drawn(run: Run, stands: list[Array]) -> list[_Drawn]:
+    """The vehicles that are on the bridge or near, with their axles where they stand; or all."""
+    drawn = []
+    for passage, at in zip(run.passages, stands, strict=True):
+        to = 1.0 if passage.direction == "right" else -1.0
+        centre = at[0] - to * passage.vehicle.axle_positions[0]
+        back, front = extent(passage.vehicle)
+        arrow = 0.08 * run.bridge.length
+        ends = sorted([centre + to * (back - 0.2), centre + to * (front + arrow)])
+        lane = int(to < 0.0) if passage.lane is None else passage.lane
+        drawn.append(_Drawn(passage.vehicle, lane, centre, to, (ends[0], ends[1])))
+    near = [each for each in drawn if each.ends[1] > 0.0 and each.ends[0] < run.bridge.length]
+    return near or drawn
+
+
+def _worst_time(run: Run) -> float:
     envelope = run.envelope("moment")
     each = (envelope.static_max, envelope.static_min)
     worst = max(each, key=lambda extremes: float(np.abs(extremes.value).max()))
-    return float(worst.position[np.abs(worst.value).argmax()])
+    return float(worst.time[np.abs(worst.value).argmax()])
 
 
-def _single(ax: Axes, time: Array, values: Array, label: str, *, downward: bool = False) -> None:
+def _bodies(ax: Axes, time: Array, values: list[Array], label: str) -> None:
+    """A line for each body."""
+    for k, each in enumerate(values):
+        ax.plot(time, each, label=f"body {k + 1}", **LINES[k % len(LINES)])
+    ax.set_ylabel(label)
+    zero_line(ax)
+    ax.yaxis.set_inverted(True)
+
+
+def _single(ax: Axes, time: Array, values: Array, label: str) -> None:
     ax.plot(time, values, **LINES[0])
     ax.set_ylabel(label)
-    if downward:
-        zero_line(ax)
-        ax.yaxis.set_inverted(True)
 
 
 def _not_narrower(ax: Axes, range_: float) -> None:

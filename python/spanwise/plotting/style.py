@@ -52,6 +52,9 @@ GREY: Final = "#6b6b6b"
 #: Fill of bodies and areas.
 PALE: Final = "#d9d9d9"
 
+#: Bands over times without contact.
+LIFTED: Final = "#f2b880"
+
 #: Lines told apart by dashes as well as by the colours of Okabe and Ito, in order of use.
 LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#000000", "linestyle": "-"},

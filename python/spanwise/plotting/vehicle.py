@@ -8,11 +8,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spanwise.plotting import symbols
 from spanwise.plotting.style import GREY, PALE, metres, new_figure, styled, whole
 from spanwise.trains import ForceTrain, MovingMasses
-from spanwise.vehicle import Axle, Spring, Vehicle
+from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +56,7 @@ class VehiclePlot:
         """
         if ax is None:
             columns, notes = _values(self._vehicle)
-            drawing = 2.9 + (_top(self._vehicle) - ROOF) / 72.0
+            drawing = 2.9 + (top(self._vehicle) - ROOF) / 72.0
             table = LINE * (len(columns) + len(notes))
             figure = new_figure(drawing + table)
             ax, below = figure.subplots(2, 1, height_ratios=[drawing, table])
@@ -70,6 +71,14 @@ def overhang(vehicle: AnyVehicle) -> float:
     return max(0.2 * vehicle.wheelbase, 0.8) if alone else 0.8
 
 
+def extent(vehicle: AnyVehicle) -> tuple[float, float]:
+    """Rear and front of what is drawn, ahead of the centre of mass [m]."""
+    at, beyond = vehicle.axle_positions, overhang(vehicle)
+    boxes = _boxes(vehicle) if isinstance(vehicle, Vehicle) else []
+    back = min([at[-1] - beyond, *(box.back for box in boxes)])
+    return back, max([at[0] + beyond, *(box.front for box in boxes)])
+
+
 @dataclass(frozen=True)
 class _Box:
     """A body in the drawing: ends and centre of mass [m], floor and roof [points]."""
@@ -79,6 +88,11 @@ class _Box:
     centre: float
     floor: float
     roof: float
+
+
+def _ends(body: Body) -> list[Hinge | Spring]:
+    """What couples a body to earlier ones."""
+    return [*([] if body.hinge is None else [body.hinge]), *body.springs]
 
 
 def _levels(vehicle: Vehicle) -> list[int]:
@@ -119,33 +133,38 @@ def _boxes(vehicle: Vehicle) -> list[_Box]:
     return boxes
 
 
-def _top(vehicle: AnyVehicle) -> float:
+def top(vehicle: AnyVehicle) -> float:
     """Height of all there is above the road [points]."""
     if not isinstance(vehicle, Vehicle):
         return AXLE
     return max(box.roof for box in _boxes(vehicle))
 
 
-def draw_vehicle(ax: Axes, vehicle: AnyVehicle, centre: float, *, scale: float = 1.0) -> None:
-    """The vehicle on the base line, its centre of mass at `centre` [m], heights by this scale."""
+def draw_vehicle(
+    ax: Axes, vehicle: AnyVehicle, centre: float, *, scale: float = 1.0, to: float = 1.0
+) -> None:
+    """The vehicle on the base line, its centre of mass at `centre` [m], heights by this scale.
+
+    It goes to the right, or to the left with `to` = -1.
+    """
     at = vehicle.axle_positions
     if isinstance(vehicle, Vehicle):
         boxes = _boxes(vehicle)
-        _draw_bodies(ax, vehicle, boxes, centre, scale)
+        _draw_bodies(ax, vehicle, boxes, centre, scale, to)
         first = max(boxes, key=lambda box: box.front)
         front, middle = first.front, 0.5 * (first.floor + first.roof)
     else:
-        _draw_train(ax, vehicle, centre, scale)
+        _draw_train(ax, vehicle, centre + to * at, scale)
         front, middle = at[0] + (1.0 if isinstance(vehicle, MovingMasses) else 0.3), 0.5 * AXLE
-    ahead = symbols.local(ax, centre + front)
+    ahead = symbols.local(ax, centre + to * front)
     middle *= scale
-    symbols.stroke(ax, ahead, [(5.0, middle), (20.0, middle)], width=1.2)
-    head = [(26.0, middle), (18.0, middle + 3.0), (18.0, middle - 3.0)]
+    symbols.stroke(ax, ahead, [(5.0 * to, middle), (20.0 * to, middle)], width=1.2)
+    head = [(26.0 * to, middle), (18.0 * to, middle + 3.0), (18.0 * to, middle - 3.0)]
     symbols.stroke(ax, ahead, head, fill="black")
 
 
 def _draw_bodies(
-    ax: Axes, vehicle: Vehicle, boxes: list[_Box], centre: float, scale: float
+    ax: Axes, vehicle: Vehicle, boxes: list[_Box], centre: float, scale: float, to: float
 ) -> None:
     at, across = vehicle.axle_positions, symbols.level(ax)
     gaps = -np.diff(at) * symbols.points_per_metre(ax)
@@ -153,13 +172,13 @@ def _draw_bodies(
     widest = 6.0 * scale if most < 3 else 4.5 * scale
     half = float(np.clip(0.15 * gaps.min(initial=np.inf), 0.8, widest))
     for box in boxes:
-        back, front = centre + box.back, centre + box.front
+        back, front = centre + to * box.back, centre + to * box.front
         floor, roof = scale * box.floor, scale * box.roof
         outline = [(back, floor), (front, floor), (front, roof), (back, roof)]
         symbols.stroke(ax, across, outline, fill=PALE)
         radius = (5.5 if len(boxes) == 1 else 4.5) * scale
-        symbols.centre_of_mass(ax, centre + box.centre, 0.5 * (floor + roof), radius=radius)
-    for x, axle, (b, _) in zip(centre + at, vehicle.axles, vehicle.axle_order, strict=True):
+        symbols.centre_of_mass(ax, centre + to * box.centre, 0.5 * (floor + roof), radius=radius)
+    for x, axle, (b, _) in zip(centre + to * at, vehicle.axles, vehicle.axle_order, strict=True):
         _draw_axle(ax, x, axle, half, scale)
         if boxes[b].floor > FLOOR:
             bar = [(-2.0 * half, scale * FLOOR), (2.0 * half, scale * FLOOR)]
@@ -170,7 +189,7 @@ def _draw_bodies(
     for b, body in enumerate(vehicle.parts):
         for end in body.joints:
             low, high = sorted((boxes[b], boxes[end.to]), key=lambda box: box.floor)
-            x = centre + boxes[b].centre + end.own
+            x = centre + to * (boxes[b].centre + end.own)
             if isinstance(end, Spring):
                 drawn = _beside(end.damping, end.friction_limit)
                 _draw_row(ax, x, drawn, scale * low.roof, scale * high.floor, 4.0 * scale)
@@ -227,8 +246,8 @@ def _draw_row(
         element(ax, x, shift, low, high, width)
 
 
-def _draw_train(ax: Axes, train: AnyVehicle, centre: float, scale: float) -> None:
-    for x in centre + train.axle_positions:
+def _draw_train(ax: Axes, train: AnyVehicle, at: NDArray[np.float64], scale: float) -> None:
+    for x in at:
         if isinstance(train, ForceTrain):
             symbols.arrow(ax, x, 1.0, scale * AXLE)
         else:
@@ -239,12 +258,11 @@ def _draw_train(ax: Axes, train: AnyVehicle, centre: float, scale: float) -> Non
 
 def _draw_model(ax: Axes, vehicle: AnyVehicle) -> None:
     at, across = vehicle.axle_positions, symbols.level(ax)
-    back, front = at[-1] - overhang(vehicle), at[0] + overhang(vehicle)
+    back, front = extent(vehicle)
     boxes = _boxes(vehicle) if isinstance(vehicle, Vehicle) else []
-    back, front = min([back, *(b.back for b in boxes)]), max([front, *(b.front for b in boxes)])
     margin = 0.3 * (front - back)
     ax.set_xlim(back - margin, front + margin)
-    ax.set_ylim(-58.0, _top(vehicle) + 12.0)
+    ax.set_ylim(-58.0, top(vehicle) + 12.0)
     ax.set_yticks([])
     ax.spines[["left", "top", "right"]].set_visible(False)
     centre = "loads" if isinstance(vehicle, ForceTrain) else "mass"

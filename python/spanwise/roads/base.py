@@ -13,6 +13,9 @@ from spanwise._checks import array, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise.roads import roughness
 
+if TYPE_CHECKING:
+    from spanwise.plotting import RoadPlot
+
 Array: TypeAlias = NDArray[np.float64]
 
 #: Usual length of road that a tyre averages [m].
@@ -230,6 +233,13 @@ class Road:
         the geometric mean: a straight line of slope -2 in logarithmic axes, all octaves alike.
         """
         return roughness.fitted(*self.psd(start, end), band)
+
+    @property
+    def plot(self) -> RoadPlot:
+        """Figures of the road; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import RoadPlot
+
+        return RoadPlot(self)
 
 
 @dataclass(frozen=True)

@@ -105,13 +105,14 @@ def from_table(table: Table | list[Table]) -> Road:
         roads = []
         for k, each in enumerate(table):
             with _errors_in(f"road[{k}]"):
-                roads.append(_single(each))
+                roads.append(road_of(each))
         return total(roads)
     with _errors_in("road"):
-        return _single(table)
+        return road_of(table)
 
 
-def _single(table: object) -> Road:
+def road_of(table: object, elsewhere: Callable[[str], str] = lambda key: "") -> Road:
+    """The road of one table; `elsewhere` says where a key belongs that no road has."""
     if not isinstance(table, Mapping):
         raise ValueError(f"{shown(table)}: must be a table with a kind")
     if "kind" not in table:
@@ -122,9 +123,17 @@ def _single(table: object) -> Road:
         raise ValueError(f"kind = {shown(kind)}: {allowed}")
     make, keys = KINDS[kind]
     given = {key: value for key, value in table.items() if key != "kind"}
-    keys.check_known(given, lambda key: "")
+    keys.check_known(given, lambda key: _beside(key, kind) or elsewhere(key))
     keys.check_complete(given)
     return make(**given)
+
+
+def _beside(key: str, kind: str) -> str:
+    """That a key is one of other kinds of roads, or nothing."""
+    if key == "road_class":
+        return " (did you mean 'class'?)"
+    kinds = [each for each, (_, keys) in KINDS.items() if key in keys.allowed]
+    return f" (not beside kind = {kind!r}, but {' and '.join(kinds)})" if kinds else ""
 
 
 @contextmanager
