@@ -41,6 +41,10 @@ pub struct Contact<L> {
     /// What δ is.
     pub weights: Weights<L>,
     suspension: Option<Suspension<L>>,
+    /// f₀.
+    initial: L,
+    /// Rate at which a suspension begins to move, per unit of δ [1/s]: for steps of no length.
+    onset: L,
 }
 
 /// The suspension of a massless axle, its rate taken as ṡ = σ s − η over a step.
@@ -82,6 +86,7 @@ impl<L: Lane> Contact<L> {
             ContactLaw::Mass(mass) => (0.0, 0.0, 1.0, mass),
             ContactLaw::Force => (1.0, 0.0, 0.0, 0.0),
         };
+        let (mut initial, mut stiffness, mut onset) = (0.0, stiffness, 0.0);
         let suspension = match point.law {
             ContactLaw::Series { tyre_stiffness, tyre_damping, suspension_stiffness, suspension_damping, friction } => {
                 let trapezoidal = friction.limit == 0.0;
@@ -91,7 +96,12 @@ impl<L: Lane> Contact<L> {
                     (true, true) => 2.0 / h,
                     (true, false) => 1.0 / h,
                 };
-                // In no time a damper holds the suspension.
+                initial = friction.initial;
+                if damped && h == 0.0 && trapezoidal {
+                    // In no time dampers alone move: c_s ṡ = k_t d + c_t (ḋ − ṡ). Friction holds at first.
+                    onset = tyre_stiffness / (tyre_damping + suspension_damping);
+                    stiffness = suspension_damping * onset;
+                }
                 (!damped || h > 0.0).then(|| Suspension {
                     stiffness: L::splat(suspension_stiffness + per_step * suspension_damping),
                     damping: L::splat(suspension_damping),
@@ -117,12 +127,19 @@ impl<L: Lane> Contact<L> {
                 plain: rate == 0.0 && acceleration == 0.0,
             },
             suspension,
+            initial: L::splat(initial),
+            onset: L::splat(onset),
         }
     }
 
     /// The suspension in the static state.
     pub fn at_rest(&self) -> Stroke<L> {
-        Stroke::at_rest(self.suspension.map_or(L::splat(0.0), |s| s.initial))
+        Stroke::at_rest(self.initial)
+    }
+
+    /// The suspension in the static state, which begins to move under the given δ; of a contact for steps of no length.
+    pub fn at_onset(&self, delta: L) -> Stroke<L> {
+        Stroke { rate: self.onset * delta, ..self.at_rest() }
     }
 
     /// Everything in p = law(u − S p) that holds for a whole step, for a suspension that was at `before` at its start.

@@ -272,6 +272,9 @@ impl<L: Lane> Stepper<L> {
             unit.rig.surge(&state.along[unit.contacts.clone()]);
         }
         self.react(&mut state, geometry, L::never())?;
+        for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&self.offset) {
+            *stroke = contact.at_onset(*delta);
+        }
         Ok(state)
     }
 

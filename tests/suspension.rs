@@ -93,6 +93,46 @@ fn dampers_of_massless_axles() {
     }
 }
 
+/// The same where the vehicle begins on a rise: its dampers move from the first instant.
+#[test]
+fn dampers_that_begin_on_a_slope() {
+    let road = profile([-30.0, 20.0], |x| rise(x + 2.7));
+    for (tyre, suspension) in [(0.0, 4e4), (2e4, 0.0), (1e4, 4e4)] {
+        let exact = by_runge_kutta(tyre, suspension, &road);
+        let vehicle = quarter_car(tyre, suspension, Friction::NONE);
+        let sizes = [50, 100, 200, 400];
+        let errors = sizes.map(|n| {
+            let own = crossed(&vehicle, &road, n);
+            own.iter().zip(&exact).map(|(a, b)| ((a - b) / b).powi(2)).sum::<f64>().sqrt()
+        });
+        let order = -observed_order(&sizes.map(|n| n as f64), &errors);
+        println!("dampers {tyre} and {suspension} N s/m: {errors:?}, order {order:.3}");
+        assert!(errors[3] <= SECOND && (order - 2.0).abs() <= ORDER_MARGIN, "{errors:?}, order {order}");
+    }
+}
+
+/// Damped or not, a suspension begins with the friction it has in the static state.
+#[test]
+fn dampers_keep_the_initial_friction() {
+    let road = profile([-30.0, 20.0], rise);
+    let stations = Stations::PerSpan(vec![3]);
+    let bridge = Bridge::continuous(&[10.0], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let settings = Settings { approach: APPROACH, road: Arc::new(road), ..Settings::at_speed(SPEED) };
+    for damper in [0.0, 4e4] {
+        for friction in [Friction::coulomb(3e3), leaf(3e3, 1e-3)] {
+            let vehicle = quarter_car(0.0, damper, Friction { initial: 2e3, ..friction });
+            let run = run(&bridge, &vehicle, &settings, 1, &undamped(), ForceSummation, &[5.0]).unwrap();
+            // Nothing moves before the rise.
+            for (i, row) in run.rows().enumerate().take_while(|(_, row)| row.positions[0] < -18.5) {
+                let load = row.loads[0] - run.outcome.history.static_loads[0];
+                let found = run.outcome.history.friction[i];
+                // The spline through the road's points rings by less than a micrometre ahead of the rise.
+                assert!(load.abs() <= 1.0 && (found - 2e3).abs() <= 1.0, "{load} N, {found} N at {} s", row.time);
+            }
+        }
+    }
+}
+
 /// With friction the rates are those of the step, so that what sticks stands still: first order. Friction that is next
 /// to nothing leaves the answer where it was.
 #[test]
