@@ -233,7 +233,7 @@ def draw_bridge(
         symbols.write(ax, symbols.local(ax, x), 0.0, -24.5, letters[support], size=9.0)
     if hinges:
         for x in bridge.hinges:
-            symbols.hinge(ax, x)
+            symbols.open_hinge(ax, x)
     if len(bridge.masses):
         ax.scatter(
             bridge.stations,

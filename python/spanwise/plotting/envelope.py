@@ -33,7 +33,7 @@ def envelope_of(run: Run, quantity: Quantity) -> Envelope:
     """The envelope, refused if there is nothing in it."""
     envelope = run.envelope(quantity)
     if len(envelope.x) == 0:
-        raise ValueError(f"quantity = {quantity!r}: this bridge has no clamped end")
+        raise ValueError(f"quantity = {quantity!r}: no support of this bridge holds the rotation")
     return envelope
 
 

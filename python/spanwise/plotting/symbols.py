@@ -157,7 +157,7 @@ def spiral(ax: Axes, x: float) -> None:
     stroke(ax, local(ax, x), coil, width=0.8, order=6.0)
 
 
-def hinge(ax: Axes, x: float) -> None:
+def open_hinge(ax: Axes, x: float) -> None:
     """An open circle in the beam."""
     turn = np.linspace(0.0, 2.0 * np.pi, 37)
     ring = np.column_stack([2.6 * np.cos(turn), 2.6 * np.sin(turn)])
