@@ -9,10 +9,11 @@ use problems::{kishan_bridge, kishan_vehicle, undamped};
 use spanwise::analysis::Analysis;
 use spanwise::assembly::Friction;
 use spanwise::course::{Direction, Drive, Passage};
-use spanwise::crossing::{Settings, cross, cross_all};
+use spanwise::crossing::{cross, cross_all};
 use spanwise::flexibility::Flexibility;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
+use spanwise::settings::Settings;
 use spanwise::survey::survey;
 
 fn kishan_1973(c: &mut Criterion) {

@@ -2,7 +2,8 @@
 
 use crate::bridge::Bridge;
 use crate::course::Passage;
-use crate::crossing::{Damping, ModalBridge, Settings, cross_all};
+use crate::crossing::{ModalBridge, cross_all};
+use crate::damping::Damping;
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
@@ -12,6 +13,7 @@ use crate::influence::{Quantity, Responses};
 use crate::modes::Modes;
 use crate::path::ModeShapes;
 use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
+use crate::settings::Settings;
 use crate::survey::survey;
 use crate::vehicle::Vehicle;
 

@@ -38,6 +38,8 @@ pub struct Contact<L> {
     floor: L,
     /// Force per unit of δ: k_t [N/m], or a mass [kg].
     stiffness: L,
+    /// Whether the force is constant, so that there is nothing to solve for.
+    pub constant: bool,
     /// What δ is.
     pub weights: Weights<L>,
     suspension: Option<Suspension<L>>,
@@ -61,7 +63,8 @@ struct Suspension<L> {
     /// f₀.
     initial: L,
     law: Law<L>,
-    /// σ: 2/h by the trapezoidal rule, where nothing sticks; else 1/h, backward Euler, so that what sticks stands still.
+    /// σ: 2/h by the trapezoidal rule; 1/h, backward Euler, beside friction, so that what sticks stands still, and of
+    /// dampers too weak to keep up with the springs in one step.
     per_step: L,
     trapezoidal: bool,
 }
@@ -89,7 +92,9 @@ impl<L: Lane> Contact<L> {
         let (mut initial, mut stiffness, mut onset) = (0.0, stiffness, 0.0);
         let suspension = match point.law {
             ContactLaw::Series { tyre_stiffness, tyre_damping, suspension_stiffness, suspension_damping, friction } => {
-                let trapezoidal = friction.limit == 0.0;
+                // A damper too weak to keep up with the springs in one step would make the rule ring.
+                let weak = h * (tyre_stiffness + suspension_stiffness) > 2.0 * (tyre_damping + suspension_damping);
+                let trapezoidal = friction.limit == 0.0 && !weak;
                 let damped = tyre_damping != 0.0 || suspension_damping != 0.0;
                 let per_step = match (damped, trapezoidal) {
                     (false, _) => 0.0,
@@ -120,6 +125,7 @@ impl<L: Lane> Contact<L> {
             // A mass in rigid contact has no way to leave the road and come back.
             floor: L::splat(if bilateral || acceleration != 0.0 { f64::NEG_INFINITY } else { -static_load }),
             stiffness: L::splat(stiffness),
+            constant: point.law == ContactLaw::Force,
             weights: Weights {
                 value: L::splat(value),
                 rate: L::splat(rate),
@@ -280,6 +286,9 @@ impl<L: Lane> Elements<L> {
         for _ in 0..SWEEPS {
             let mut change = L::splat(0.0);
             for k in 0..n {
+                if self.contacts.get(k).is_some_and(|contact| contact.constant) {
+                    continue;
+                }
                 let row = &compliance[k * n..(k + 1) * n];
                 let mut others = u[k];
                 for (j, (s, p)) in row.iter().zip(p.iter()).enumerate() {

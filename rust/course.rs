@@ -3,12 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::crossing::Settings;
+use crate::assembly::ContactLaw;
 use crate::error::{Error, finite, not_negative, positive};
-use crate::motion::Motion;
+use crate::motion::{Motion, reasonable};
 use crate::newmark::Coordinate;
-use crate::path::Pavement;
+use crate::path::{ModeShapes, Pavement};
 use crate::road::Road;
+use crate::settings::Settings;
 use crate::vehicle::Vehicle;
 
 /// How a vehicle moves along the bridge.
@@ -122,10 +123,14 @@ impl<'a> Course<'a> {
         let speed = passage.speed.unwrap_or(settings.speed);
         let drive = passage.drive.as_ref().unwrap_or(&settings.drive);
         not_negative(format!("{key}entry"), passage.entry)?;
+        reasonable(format!("{key}speed"), if speed.is_nan() { 0.0 } else { speed }, "m/s")?;
         let start = -settings.approach;
+        let own = |error: Error| error.within(key);
         let motion = match drive {
-            Drive::Speeds { times, speeds } => Motion::through(start, times, speeds)?,
-            Drive::Acceleration(a) => Motion::accelerated(start, positive(format!("{key}speed"), speed)?, *a)?,
+            Drive::Speeds { times, speeds } => Motion::through(start, times, speeds).map_err(own)?,
+            Drive::Acceleration(a) => {
+                Motion::accelerated(start, positive(format!("{key}speed"), speed)?, *a).map_err(own)?
+            }
             _ => Motion::steady(start, positive(format!("{key}speed"), speed)?),
         };
         let rolls = matches!(drive, Drive::ConstantTraction | Drive::Braking(_));
@@ -138,10 +143,10 @@ impl<'a> Course<'a> {
         }
         let braking = match drive {
             Drive::Braking(braking) => {
-                positive("braking deceleration", braking.deceleration)?;
-                finite("braking start", braking.from)?;
-                not_negative("braking ramp", braking.ramp)?;
-                positive("braking friction", braking.adhesion)?;
+                positive(format!("{key}braking deceleration"), braking.deceleration)?;
+                finite(format!("{key}braking start"), braking.from)?;
+                not_negative(format!("{key}braking ramp"), braking.ramp)?;
+                positive(format!("{key}braking friction"), braking.adhesion)?;
                 Some(*braking)
             }
             _ => None,
@@ -188,6 +193,29 @@ impl<'a> Course<'a> {
     pub fn end(&self, length: f64) -> f64 {
         let exit = self.motion.time_at(length + self.wheelbase());
         self.entry + exit.or(self.motion.stands_from()).unwrap_or(f64::INFINITY)
+    }
+
+    /// Refuses what a contact cannot follow: a mass in rigid contact neither a kink of the bridge nor one of the road,
+    /// which strike it; a damped tyre no jump of the road.
+    pub fn check_contact(&self, shapes: &ModeShapes) -> Result<(), Error> {
+        let laws = || self.vehicle.assembly().contacts.iter().map(|contact| contact.law);
+        let rigid = laws().any(|law| matches!(law, ContactLaw::Mass(_)));
+        let damped = laws().any(|law| !law.is_plain());
+        if rigid && shapes.have_kinks() {
+            let allowed = "a hinge strikes them as they pass; give them stiff tyres instead";
+            return Err(Error::input("vehicle", "masses in rigid contact on a bridge with hinges", allowed));
+        }
+        let smoothness = self.road.smoothness();
+        if rigid && smoothness < 1 {
+            let allowed =
+                "its kinks or jumps strike them; give its features edges or a contact_patch, or the masses tyres";
+            return Err(Error::input("road", "not smooth below masses in rigid contact", allowed));
+        }
+        if damped && smoothness < 0 {
+            let allowed = "a damped tyre cannot follow it; give the step or the edges a contact_patch";
+            return Err(Error::input("road", "jumps below damped tyres", allowed));
+        }
+        Ok(())
     }
 
     /// Refuses a road that ends before the vehicle has left the bridge.

@@ -70,7 +70,8 @@ pub enum Error {
     /// Under constant traction the vehicle came to rest before it had left the bridge.
     #[error(
         "the vehicle comes to rest at t = {time:.4} s with its front axle at x = {position:.3} m: at this speed \
-         constant traction does not carry it out of the bridge's sag; raise speed or use drive = \"constant-speed\""
+         constant traction does not carry it up the slope of bridge and road; raise speed or use drive = \
+         \"constant-speed\""
     )]
     Stopped {
         /// Time [s].
@@ -95,6 +96,14 @@ impl Error {
     /// An [`Error::Input`] from its parts.
     pub fn input(key: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
         Error::Input { key: key.into(), value: value.to_string(), allowed: allowed.into() }
+    }
+
+    /// The same about one of several: `place` goes in front of the name of what is refused.
+    pub fn within(self, place: &str) -> Self {
+        match self {
+            Error::Input { key, value, allowed } => Error::Input { key: format!("{place}{key}"), value, allowed },
+            other => other,
+        }
     }
 
     /// Whether the caller's input is at fault (otherwise the numerics are, or the user interrupted).

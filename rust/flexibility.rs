@@ -16,6 +16,9 @@ use crate::bridge::Bridge;
 use crate::error::Error;
 use crate::line::{Line, Mesh};
 
+/// Softest outer spring of a beam on more than two supports, as a fraction of EI/L³: below it rounding shows.
+const SOFT: f64 = 1e-6;
+
 /// What is done to the beam at a node to deflect it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
@@ -137,8 +140,8 @@ impl Hinges {
         }
         // Symmetric by reciprocity.
         let resistance = Mat::from_fn(n, n, |i, j| -flexibility.bending_moment(&lines[j.min(i)], nodes[j.max(i)]));
-        let stiffest = flexibility.flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
-        let scale = stiffest / flexibility.mesh.length();
+        let softest = flexibility.flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
+        let scale = softest / flexibility.mesh.length();
         let mut lower = Mat::<f64>::zeros(n, n);
         for j in 0..n {
             let known = |i: usize, lower: &Mat<f64>| (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
@@ -198,7 +201,7 @@ impl Flexibility {
     pub fn new(bridge: &Bridge, sections: &[f64]) -> Result<Self, Error> {
         let mesh = Mesh::new(bridge.length(), bridge.points().chain(sections.iter().copied()));
         let middle = |panel: usize| mesh.nodes()[panel] + 0.5 * mesh.width(panel);
-        let flexural_rigidity = (0..mesh.panels()).map(|p| bridge.flexural_rigidity_at(middle(p))).collect();
+        let flexural_rigidity: Vec<f64> = (0..mesh.panels()).map(|p| bridge.flexural_rigidity_at(middle(p))).collect();
 
         let supports = bridge.supports();
         let last = supports.len() - 1;
@@ -229,6 +232,7 @@ impl Flexibility {
         let intermediate: Vec<Spring> =
             (1..last.max(1)).flat_map(|i| [Some(deflection(i)), slope(i)]).flatten().collect();
 
+        refuse_soft_base(bridge, [0, last], &flexural_rigidity)?;
         let none = Layer { restraints: Vec::new(), lines: Vec::new(), factor: None };
         let hinges: Vec<usize> = bridge.hinges().iter().map(|&x| mesh.node_at(x)).collect();
         let mut flexibility = Flexibility {
@@ -465,6 +469,25 @@ fn order(restraint: &Restraint) -> (usize, u8) {
         Restraint::Deflection(node) => (node, 0),
         Restraint::Slope(node) => (node, 1),
     }
+}
+
+/// Refuses outer springs so soft, beside other supports, that the beam would be carried by the difference of large numbers.
+fn refuse_soft_base(bridge: &Bridge, outer: [usize; 2], flexural_rigidity: &[f64]) -> Result<(), Error> {
+    let supports = bridge.supports();
+    if supports.len() <= 2 {
+        return Ok(());
+    }
+    let softest = flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
+    let least = SOFT * softest / bridge.length().powi(3);
+    for i in outer {
+        let stiffness = supports[i].fixity.vertical();
+        if stiffness < least {
+            let allowed =
+                format!("must be at least {least:.3e} N/m beside other supports; leave it out if it is softer");
+            return Err(Error::input(format!("supports[{i}].vertical"), format!("{stiffness:e} N/m"), allowed));
+        }
+    }
+    Ok(())
 }
 
 impl Restraint {

@@ -12,7 +12,7 @@ pub use by_modes::{ByModes, GivenLines, TwoSided};
 use faer::Mat;
 
 use crate::bridge::{COINCIDENT, MAX_STATIONS, Support};
-use crate::crossing::Damping;
+use crate::damping::Damping;
 use crate::error::{Error, finite, positive};
 use crate::influence::{Quantity, Responses};
 use crate::line::{Line, Mesh};

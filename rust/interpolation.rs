@@ -1,8 +1,5 @@
 //! Cubic lines from values at points: by their slopes where these are known, else by the natural spline.
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
-
 use crate::line::{Line, Mesh};
 
 /// Values and slopes of a line just left and just right of every node.
@@ -52,25 +49,27 @@ pub fn spline_slopes(x: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     }
     let h = |i: usize| x[i + 1] - x[i];
     let chord = |i: usize| (values[i + 1] - values[i]) / h(i);
-    let mut matrix = Mat::<f64>::zeros(n, n);
-    let mut right = Mat::<f64>::zeros(n, 1);
-    for (i, end) in [(0, ends[0]), (n - 1, ends[1])] {
-        matrix[(i, i)] = 1.0;
-        match end {
-            End::Slope(slope) => right[(i, 0)] = slope,
-            End::Natural => {
-                let (other, panel) = if i == 0 { (1, 0) } else { (n - 2, n - 2) };
-                matrix[(i, other)] = 0.5;
-                right[(i, 0)] = 1.5 * chord(panel);
-            }
+    // Rows (below, diagonal, above, right side) of a tridiagonal system in which the diagonal prevails.
+    let row = |i: usize| match (i, ends) {
+        (0, [End::Slope(slope), _]) => [0.0, 1.0, 0.0, slope],
+        (0, [End::Natural, _]) => [0.0, 1.0, 0.5, 1.5 * chord(0)],
+        (i, [_, End::Slope(slope)]) if i == n - 1 => [0.0, 1.0, 0.0, slope],
+        (i, [_, End::Natural]) if i == n - 1 => [0.5, 1.0, 0.0, 1.5 * chord(n - 2)],
+        _ => {
+            let (left, right) = (1.0 / h(i - 1), 1.0 / h(i));
+            [left, 2.0 * (left + right), right, 3.0 * (chord(i - 1) * left + chord(i) * right)]
         }
+    };
+    let (mut above, mut slopes) = (vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        let [below, diagonal, next, right] = row(i);
+        let (before, solved) = if i == 0 { (0.0, 0.0) } else { (above[i - 1], slopes[i - 1]) };
+        let pivot = diagonal - below * before;
+        above[i] = next / pivot;
+        slopes[i] = (right - below * solved) / pivot;
     }
-    for i in 1..n - 1 {
-        matrix[(i, i - 1)] = 1.0 / h(i - 1);
-        matrix[(i, i)] = 2.0 / h(i - 1) + 2.0 / h(i);
-        matrix[(i, i + 1)] = 1.0 / h(i);
-        right[(i, 0)] = 3.0 * (chord(i - 1) / h(i - 1) + chord(i) / h(i));
+    for i in (0..n - 1).rev() {
+        slopes[i] -= above[i] * slopes[i + 1];
     }
-    let slopes = matrix.partial_piv_lu().solve(&right);
-    slopes.col(0).iter().copied().collect()
+    slopes
 }

@@ -3,6 +3,18 @@
 use crate::error::{Error, finite, not_negative};
 use crate::newmark::Coordinate;
 
+/// Highest speed [m/s] and acceleration [m/s²] that are not taken for a slip of the pen.
+const MOST: f64 = 1e4;
+
+/// A speed or acceleration within reason.
+pub fn reasonable(key: impl Into<String>, value: f64, unit: &str) -> Result<f64, Error> {
+    let key = key.into();
+    if finite(key.clone(), value)?.abs() > MOST {
+        return Err(Error::input(key, format!("{value:e} {unit}"), format!("must be at most {MOST} {unit}")));
+    }
+    Ok(value)
+}
+
 /// The way of a vehicle's front, of constant acceleration piece by piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
@@ -18,7 +30,7 @@ impl Motion {
 
     /// With constant acceleration [m/s²] from time zero on; one that slows down stands in the end.
     pub fn accelerated(x: f64, speed: f64, acceleration: f64) -> Result<Self, Error> {
-        finite("acceleration", acceleration)?;
+        reasonable("acceleration", acceleration, "m/s2")?;
         let mut pieces = vec![(0.0, Coordinate { x, v: speed, a: acceleration })];
         if acceleration < 0.0 {
             let stop = -speed / acceleration;
@@ -36,6 +48,7 @@ impl Motion {
         for (i, (&t, &v)) in times.iter().zip(speeds).enumerate() {
             finite(format!("times[{i}]"), t)?;
             not_negative(format!("speeds[{i}]"), v)?;
+            reasonable(format!("speeds[{i}]"), v, "m/s")?;
             if i > 0 && t <= times[i - 1] {
                 let allowed = format!("must be greater than the time before it, {} s", times[i - 1]);
                 return Err(Error::input(format!("times[{i}]"), format!("{t} s"), allowed));
@@ -85,6 +98,9 @@ impl Motion {
             }
             let way = x - c.x;
             if i == 0 && way <= 0.0 {
+                return (c.v > 0.0).then(|| from + way / c.v);
+            }
+            if c.a == 0.0 {
                 return (c.v > 0.0).then(|| from + way / c.v);
             }
             // v dt + a dt²/2 = way, in the form that does not cancel.

@@ -6,6 +6,9 @@ use crate::newmark::Coordinate;
 use crate::road::Road;
 use crate::step::{Geometry, Surface};
 
+/// Jump of a slope, relative to the steepest, from which on it is a kink and not rounding.
+const KINK: f64 = 1e-6;
+
 /// The included modes along the bridge, laid out for evaluation at one point after another.
 #[derive(Debug, Clone)]
 pub struct ModeShapes {
@@ -33,6 +36,16 @@ impl ModeShapes {
         points
             .map(|(panel, fraction)| (0..self.modes).map(|m| self.value(panel, fraction, m).powi(2)).sum())
             .fold(0.0, f64::max)
+    }
+
+    /// Whether the slope of a mode jumps anywhere but at the ends: at hinges.
+    pub fn have_kinks(&self) -> bool {
+        (0..self.modes).any(|mode| {
+            let slopes = |panel: usize| [0.0, 1.0].map(|fraction| self.rates(panel, fraction, mode)[1]);
+            let panels: Vec<[f64; 2]> = (0..self.mesh.panels()).map(slopes).collect();
+            let steepest = panels.iter().flatten().fold(0.0_f64, |m, s| m.max(s.abs()));
+            panels.windows(2).any(|pair| (pair[1][0] - pair[0][1]).abs() > KINK * steepest)
+        })
     }
 
     fn value(&self, panel: usize, fraction: f64, mode: usize) -> f64 {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use faer::Mat;
 
-use crate::crossing::Damping;
+use crate::damping::Damping;
 use crate::error::Error;
 use crate::history::History;
 use crate::influence::Responses;

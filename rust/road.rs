@@ -99,6 +99,23 @@ impl Road {
         sum
     }
 
+    /// How smooth the surface is, averaged over contact patches: −1 if its elevation jumps anywhere, 0 if its slope
+    /// does, 1 or more if neither.
+    pub fn smoothness(&self) -> i32 {
+        self.parts.iter().fold(2, |least, part| match part {
+            Part::Feature(feature) => least.min(feature.smoothness()),
+            Part::Random(_) | Part::Profile(_) => least,
+        })
+    }
+
+    /// The shortest edge or contact patch of its features [m]: what a time step must resolve.
+    pub fn finest(&self) -> f64 {
+        self.parts.iter().fold(f64::INFINITY, |least, part| match part {
+            Part::Feature(feature) => least.min(feature.finest()),
+            Part::Random(_) | Part::Profile(_) => least,
+        })
+    }
+
     /// The x that the road is known for [m]; infinite where nothing was measured.
     pub fn ends(&self) -> [f64; 2] {
         self.parts.iter().fold([f64::NEG_INFINITY, f64::INFINITY], |[from, to], part| match part {

@@ -278,12 +278,6 @@ impl<L: Lane> Stepper<L> {
         Ok(state)
     }
 
-    /// Whether the step asks for the slopes of the modes under the contacts, and for their curvatures.
-    pub fn needs_slopes(&self) -> bool {
-        let rolling = self.units.iter().any(|unit| unit.propulsion == Propulsion::Rolling);
-        rolling || self.elements.contacts.iter().any(|contact| !contact.weights.plain)
-    }
-
     /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, and it rocks about them.
     pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
         self.units[vehicle].rig = standing;
@@ -421,7 +415,7 @@ impl<L: Lane> Stepper<L> {
             }
         }
         // The bridge below the contacts.
-        for (k, contact) in self.elements.contacts.iter().enumerate() {
+        for (k, contact) in self.elements.contacts.iter().enumerate().filter(|(_, contact)| !contact.constant) {
             let weights = contact.weights;
             let shapes = &self.shapes[k * modes..(k + 1) * modes];
             let senses = &mut self.senses[k * modes..(k + 1) * modes];
@@ -459,7 +453,9 @@ impl<L: Lane> Stepper<L> {
         }
         // The vehicles above them, and what rubs between their parts.
         for unit in &self.units {
-            for own in 0..unit.rig.elements {
+            // A vehicle without coordinates adds nothing.
+            let elements = if unit.rig.size == 0 { 0 } else { unit.rig.elements };
+            for own in 0..elements {
                 let k = unit.element(own);
                 let [value, rate] = unit.rig.shortening(&self.newmark, own);
                 let factor = match self.elements.contacts.get(k) {

@@ -6,11 +6,12 @@ use faer::Mat;
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::Drive;
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::history::History;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
+use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.

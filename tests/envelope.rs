@@ -4,10 +4,10 @@ mod problems;
 
 use problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::crossing::Settings;
 use spanwise::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
+use spanwise::settings::Settings;
 
 /// Two evaluations of one response, relative to its largest value.
 const ROUNDING: f64 = 1e-12;

@@ -4,9 +4,9 @@ mod problems;
 
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
-use spanwise::crossing::Settings;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
+use spanwise::settings::Settings;
 
 /// Two evaluations of one shear, relative to its largest value.
 const ROUNDING: f64 = 1e-10;

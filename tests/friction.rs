@@ -4,9 +4,9 @@ mod problems;
 
 use problems::*;
 use spanwise::assembly::Friction;
-use spanwise::crossing::Settings;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
+use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Two descriptions of the same vehicle, relative to the largest value.

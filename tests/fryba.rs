@@ -6,9 +6,10 @@ mod problems;
 use problems::answers::{MovingForce, moving_forces};
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
+use spanwise::settings::Settings;
 
 /// Half a unit of the last digit of the table is 5e-5; the rest is for the steps, the stations and the modes left out.
 const AMPLIFICATION: f64 = 5e-4;

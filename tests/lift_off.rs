@@ -12,7 +12,7 @@ use proptest::test_runner::RngSeed;
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::Drive;
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::history::LiftOff;
 use spanwise::recovery::Recovery::ForceSummation;
@@ -20,6 +20,7 @@ use spanwise::road::Road;
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::{Class, Spectrum};
+use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 /// Balances of forces at an instant, to rounding of what the steps leave, relative to the weight.

@@ -10,11 +10,12 @@ use problems::*;
 use spanwise::assembly::{BuildUp, Friction};
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::{Braking, Direction, Drive, Passage};
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::friction::{Law, Stroke};
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{ForceSummation, Superposition};
 use spanwise::road::Road;
+use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Two descriptions of the same thing, relative to its largest value.

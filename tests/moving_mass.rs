@@ -9,8 +9,8 @@ use problems::mechanics::{Shapes, run_all, runge_kutta};
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::{Direction, Drive, Passage};
-use spanwise::crossing::Settings;
 use spanwise::recovery::Recovery::Superposition;
+use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 /// Deflections and forces in steps of a two-hundredth of the shortest period, relative to the largest: what steps of

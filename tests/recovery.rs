@@ -5,12 +5,13 @@ mod problems;
 use faer::Mat;
 use problems::*;
 use spanwise::bridge::{Bridge, Stations};
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::flexibility::Restraint;
 use spanwise::influence::Quantity;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
 use spanwise::sequence::{Recovered, Sequence};
+use spanwise::settings::Settings;
 
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;

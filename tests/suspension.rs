@@ -9,9 +9,9 @@ use problems::vehicles::leaf;
 use problems::*;
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Stations};
-use spanwise::crossing::Settings;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
+use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// An observed order may differ from that of the rule by this much.

@@ -8,10 +8,11 @@ use problems::*;
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::{Braking, Direction, Drive, Passage};
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
+use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 /// Two computations of the same thing, relative to its largest value.

@@ -5,8 +5,8 @@ mod problems;
 
 use problems::answers::YangYau;
 use problems::*;
-use spanwise::crossing::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
+use spanwise::settings::Settings;
 use spanwise::vehicle::Suspension;
 
 /// The published deflections have five digits; the rest is for their steps and ours.

@@ -10,7 +10,7 @@ use super::{Matrix, Vector, matrix, rows};
 use crate::along::Along;
 use crate::analysis::Analysis;
 use crate::bridge::{Bridge, COINCIDENT, Fixity, Layout, Stations, Support};
-use crate::crossing::Damping;
+use crate::damping::Damping;
 use crate::error::Error;
 use crate::flexibility::{Flexibility, Restraint, Structure};
 use crate::given::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};

@@ -13,11 +13,12 @@ use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, interruptible, rows};
 use crate::analysis::{self, Analysis};
 use crate::course::{Braking, Direction, Drive, Passage};
-use crate::crossing::{Damping, Settings};
+use crate::damping::Damping;
 use crate::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::error::Error;
 use crate::influence::Quantity;
 use crate::recovery::Recovery;
+use crate::settings::Settings;
 use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
@@ -220,7 +221,11 @@ fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
         ("braking", &[deceleration, from, ramp, adhesion]) => {
             Ok(Drive::Braking(Braking { deceleration, from, ramp, adhesion }))
         }
-        _ => Err(Error::input("drive", format!("\"{name}\""), "must be constant-speed or constant-traction")),
+        _ => Err(Error::input(
+            "drive",
+            format!("\"{name}\""),
+            "must be constant-speed, constant-traction, acceleration, speeds or braking",
+        )),
     }
 }
 

@@ -62,6 +62,26 @@ impl Feature {
         Ok(Feature { pieces: vec![piece], patch })
     }
 
+    /// How smooth it is: −1 with a jump, 0 with a kink, 1 with a continuous slope; a contact patch adds one.
+    pub fn smoothness(&self) -> i32 {
+        let piece = |piece: &Piece| match *piece {
+            Piece::Smooth { length: 0.0, .. } => -1,
+            Piece::Straight { .. } | Piece::Arch { .. } => 0,
+            Piece::Smooth { .. } => 1,
+        };
+        let least = self.pieces.iter().map(piece).min().unwrap_or(1);
+        least + i32::from(self.patch.length() > 0.0)
+    }
+
+    /// The shortest way over which it changes [m]: an edge and the contact patch together; infinite if it jumps.
+    pub fn finest(&self) -> f64 {
+        let lengths = self.pieces.iter().map(|piece| match *piece {
+            Piece::Smooth { length, .. } | Piece::Straight { length, .. } | Piece::Arch { length, .. } => length,
+        });
+        let ways = lengths.map(|length| length + self.patch.length()).filter(|way| *way > 0.0);
+        ways.fold(f64::INFINITY, f64::min)
+    }
+
     /// Elevation, slope and curvature at x, averaged over the contact patch.
     pub fn at(&self, x: f64) -> Point {
         self.patch.average(|x| self.curve(x), x)

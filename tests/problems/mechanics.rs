@@ -3,7 +3,7 @@
 use spanwise::analysis::Analysis;
 use spanwise::bridge::Bridge;
 use spanwise::course::Passage;
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::line::{Line, Mesh};
@@ -12,6 +12,7 @@ use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::road::patch::Patch;
 use spanwise::road::profile::Profile;
+use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 use super::Run;

@@ -12,12 +12,13 @@ use spanwise::analysis::{Analysis, Outcome};
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Fixity, Layout, Stations, Support};
 use spanwise::course::Drive;
-use spanwise::crossing::{Damping, Settings};
+use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::influence::Quantity;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
+use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// One foot [m].

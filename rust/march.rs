@@ -1,0 +1,255 @@
+//! A crossing step by step: brakes, standing vehicles, ends, and what is recorded.
+
+use crate::course::{Braking, Course, Direction};
+use crate::crossing::ModalBridge;
+use crate::error::Error;
+use crate::history::{Columns, History};
+use crate::newmark::Coordinate;
+use crate::rig::Rig;
+use crate::settings::Settings;
+use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, State, Stepper, Unsettled};
+use crate::steps::{MAX_STEPS, Steps};
+
+/// Steps between two questions whether to go on.
+const POLL_EVERY: usize = 1024;
+
+/// A crossing being marched through time.
+pub struct March<'a> {
+    courses: &'a [Course<'a>],
+    settings: &'a Settings,
+    length: f64,
+    h: f64,
+    stepper: Stepper<f64>,
+    starter: Stepper<f64>,
+    /// After so many steps a vehicle that rolls freely counts as stopped.
+    most_steps: usize,
+    history: History,
+    /// When each vehicle had left the bridge or stood for good.
+    ended: Vec<Option<f64>>,
+    /// When each vehicle began to brake.
+    braking_since: Vec<Option<f64>>,
+}
+
+impl<'a> March<'a> {
+    /// Ready to start.
+    pub fn new(model: &'a ModalBridge, courses: &'a [Course<'a>], settings: &'a Settings, steps: &Steps) -> Self {
+        let moving: Vec<Moving<'_>> = courses
+            .iter()
+            .map(|course| Moving {
+                assembly: course.vehicle.assembly(),
+                propulsion: if course.rolls { Propulsion::Rolling } else { Propulsion::Prescribed },
+                direction: course.direction.sign(),
+            })
+            .collect();
+        let Settings { beta, gravity, lift_off, .. } = *settings;
+        let scheme = Scheme { h: steps.h, beta, gravity, lift_off };
+        let mut history = History {
+            axles: courses.last().map_or(0, |course| course.axles.end),
+            modes: model.omega.len(),
+            step: steps.h,
+            static_loads: courses.iter().flat_map(|course| course.vehicle.static_loads(gravity)).collect(),
+            ..History::default()
+        };
+        for course in courses {
+            let assembly = course.vehicle.assembly();
+            let (motion, first) = (history.motion_width(), history.frictions);
+            history.frictions += assembly.frictions.len();
+            history.vehicles.push(Columns {
+                axles: course.axles.clone(),
+                motion: motion..motion + 3 * (assembly.mass.nrows() + 1),
+                frictions: first..history.frictions,
+                direction: course.direction.sign(),
+                stopped: None,
+            });
+        }
+        history.reserve(steps.count + (settings.tail / steps.h) as usize + 16);
+        March {
+            courses,
+            settings,
+            length: model.shapes.mesh().length(),
+            h: steps.h,
+            stepper: Stepper::new(&model.omega, &model.damping, &moving, &scheme),
+            most_steps: (20 * (steps.count + 1000)).min(2 * MAX_STEPS) + (settings.tail / steps.h) as usize,
+            starter: Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h: 0.0, ..scheme }),
+            history,
+            ended: vec![None; courses.len()],
+            braking_since: vec![None; courses.len()],
+        }
+    }
+
+    /// Marches until every vehicle has left or stands, and the tail is over; `stop` holds a contact of the geometry where
+    /// it is.
+    pub fn run<G: Geometry<f64>>(
+        mut self,
+        geometry: &mut G,
+        stop: &dyn Fn(&mut G, usize),
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<History, Error> {
+        let front = |geometry: &G| geometry.motion(0).x;
+        let unsettled = |what: Unsettled, time: f64, position: f64| {
+            let what = match what {
+                Unsettled::ContactForces => "contact forces",
+                Unsettled::AxlePositions => "axle positions",
+            };
+            Error::NoConvergence { what, time, position }
+        };
+        let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
+        let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0.0, front(geometry)))?;
+        for (travel, course) in state.travel.iter_mut().zip(self.courses) {
+            let centre = course.centre(0.0);
+            *travel = if course.rolls { Coordinate { a: travel.a, ..centre } } else { centre };
+        }
+        self.check_apart(0.0, geometry)?;
+        self.record(0.0, &state, geometry);
+        for n in 1.. {
+            let time = n as f64 * self.h;
+            let before = front(geometry);
+            self.put_brakes_on(time);
+            self.stepper.advance(&mut state, geometry).map_err(|e| unsettled(e, time, before))?;
+            for (travel, course) in state.travel.iter_mut().zip(self.courses).filter(|(_, course)| !course.rolls) {
+                *travel = course.centre(time);
+            }
+            let coordinates = state.modes.iter().chain(&state.coordinates);
+            let accelerations = coordinates.fold(state.travel.iter().map(|c| c.a).sum(), |sum: f64, c| sum + c.a);
+            if !accelerations.is_finite() || !front(geometry).is_finite() {
+                return Err(Error::NotFinite { time, position: before });
+            }
+            self.stand(time, &mut state.travel, geometry, stop)?;
+            self.check_apart(time, geometry)?;
+            self.record(time, &state, geometry);
+            self.note_ends(time);
+            if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
+                let end = end + self.settings.tail;
+                if time >= end - 1e-9 * self.h {
+                    if time > end + 1e-9 * self.h {
+                        self.history.shorten_last(1.0 - (time - end) / self.h);
+                    }
+                    return Ok(self.history);
+                }
+            }
+            if n > self.most_steps {
+                return Err(Error::Stopped { time, position: front(geometry) });
+            }
+            if n % POLL_EVERY == 0 && !go_on() {
+                return Err(Error::Interrupted);
+            }
+        }
+        unreachable!("the loop over steps has no end")
+    }
+
+    fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
+        let assemblies = self.courses.iter().map(|course| course.vehicle.assembly());
+        self.history.record(time, state, geometry, assemblies);
+    }
+
+    /// How far an own axle has come at a recorded instant, from the end at which the vehicle enters [m].
+    fn way(&self, vehicle: usize, own: usize, row: usize) -> f64 {
+        let course = &self.courses[vehicle];
+        let x = self.history.positions[row * self.history.axles + course.axles.start + own];
+        if course.direction == Direction::Right { x } else { self.length - x }
+    }
+
+    /// When, before the end of the last recorded step, an own axle came to a way; the end of the step if only now.
+    fn passed(&self, vehicle: usize, own: usize, way: f64, time: f64) -> f64 {
+        let last = self.history.len() - 1;
+        let (before, now) = (self.way(vehicle, own, last.saturating_sub(1)), self.way(vehicle, own, last));
+        if now > before { time - self.h * ((now - way) / (now - before)).max(0.0) } else { time }
+    }
+
+    /// Sets the brakes for a step that ends at `time`.
+    fn put_brakes_on(&mut self, time: f64) {
+        for (v, course) in self.courses.iter().enumerate() {
+            let Some(braking) = course.braking else { continue };
+            let last = self.history.len() - 1;
+            if self.braking_since[v].is_none() && self.way(v, 0, last) >= braking.from {
+                self.braking_since[v] = Some(self.passed(v, 0, braking.from, time - self.h));
+            }
+            if let Some(since) = self.braking_since[v] {
+                let level = if braking.ramp > 0.0 { ((time - since) / braking.ramp).clamp(0.0, 1.0) } else { 1.0 };
+                let Braking { deceleration, adhesion, .. } = braking;
+                self.stepper.brake(v, Brakes { demand: deceleration, adhesion, level });
+            }
+        }
+    }
+
+    /// Sees to freely rolling vehicles that have come to rest.
+    fn stand<G: Geometry<f64>>(
+        &mut self,
+        time: f64,
+        travel: &mut [Coordinate<f64>],
+        geometry: &mut G,
+        stop: &dyn Fn(&mut G, usize),
+    ) -> Result<(), Error> {
+        for (v, course) in self.courses.iter().enumerate() {
+            if !course.rolls || self.history.vehicles[v].stopped.is_some() || travel[v].v > 0.0 {
+                continue;
+            }
+            if self.braking_since[v].is_none() {
+                return Err(Error::Stopped { time, position: geometry.motion(course.axles.start).x });
+            }
+            travel[v] = Coordinate { x: travel[v].x, v: 0.0, a: 0.0 };
+            course.axles.clone().for_each(|axle| stop(geometry, axle));
+            let assembly = course.vehicle.assembly();
+            self.stepper.hold(v, Rig::new(assembly, true, Some(&assembly.standing_mass()), self.h, self.settings.beta));
+            self.history.vehicles[v].stopped = Some(time);
+        }
+        Ok(())
+    }
+
+    /// Notes which vehicles have left the bridge, or stand for good, by the end of the last recorded step.
+    fn note_ends(&mut self, time: f64) {
+        for (v, course) in self.courses.iter().enumerate() {
+            if self.ended[v].is_some() {
+                continue;
+            }
+            let own = course.behind.len() - 1;
+            let path = self.settings.approach + self.length + course.wheelbase();
+            if self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path {
+                self.ended[v] = Some(self.passed(v, own, self.length, time));
+            } else if let Some(stands) = course.motion.stands_from()
+                && time >= course.entry + stands - 1e-9 * self.h
+            {
+                self.history.vehicles[v].stopped = Some(course.entry + stands);
+                self.ended[v] = Some(course.entry + stands);
+            } else if let Some(stopped) = self.history.vehicles[v].stopped {
+                self.ended[v] = Some(stopped);
+            }
+        }
+    }
+
+    /// Refuses vehicles that overlap in one lane.
+    fn check_apart<G: Geometry<f64>>(&self, time: f64, geometry: &G) -> Result<(), Error> {
+        let stretch = |course: &Course<'_>| {
+            let ends = [geometry.motion(course.axles.start).x, geometry.motion(course.axles.end - 1).x];
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        // As far as two come past each other in half a step, so that none passes unseen between two looks.
+        let margin = |a: &Course<'_>, b: &Course<'_>| {
+            0.5 * self.h * (geometry.motion(a.axles.start).v - geometry.motion(b.axles.start).v).abs()
+        };
+        // From its entry until it has left the bridge: before, a vehicle is only where its speed would have had it.
+        let there = |course: &Course<'_>| {
+            let last = geometry.motion(course.axles.end - 1).x;
+            let left = if course.direction == Direction::Right { last > self.length } else { last < 0.0 };
+            time >= course.entry && !left
+        };
+        for (j, second) in self.courses.iter().enumerate().skip(1).filter(|(_, second)| there(second)) {
+            let b = stretch(second);
+            let others = self.courses[..j].iter().enumerate();
+            for (i, first) in others.filter(|(_, first)| first.lane == second.lane && there(first)) {
+                let a = stretch(first);
+                let near = margin(first, second);
+                if a[0] <= b[1] + near && b[0] <= a[1] + near {
+                    let value = format!("vehicles {i} and {j} in lane {}", second.lane);
+                    let allowed = format!(
+                        "they overlap at t = {time:.3} s, from {:.2} to {:.2} m and from {:.2} to {:.2} m; enter later, \
+                         change the speed or use another lane",
+                        a[0], a[1], b[0], b[1]
+                    );
+                    return Err(Error::input("vehicles", value, allowed));
+                }
+            }
+        }
+        Ok(())
+    }
+}

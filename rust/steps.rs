@@ -1,0 +1,103 @@
+//! How long the steps of a crossing are, and how many.
+
+use crate::course::Course;
+use crate::crossing::ModalBridge;
+use crate::error::Error;
+use crate::settings::Settings;
+
+/// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
+pub const MAX_STEPS: usize = 2_000_000;
+
+/// Most memory that the states of one crossing may take [bytes].
+const MAX_HISTORY_BYTES: f64 = 4e9;
+
+/// Steps to the shortest coupled period unless the user gives a step.
+const STEPS_PER_PERIOD: f64 = 20.0;
+
+/// Steps to the narrowest panel unless the user gives a step.
+const STEPS_PER_PANEL: f64 = 100.0;
+
+/// Way in front of an axle that the road's unevenness needs at most in one step unless the user gives a step [m]: a fifth
+/// of the shortest wave that is usual.
+const WAY_PER_STEP: f64 = 0.05;
+
+/// Steps of a crossing.
+pub struct Steps {
+    /// Length [s].
+    pub h: f64,
+    /// Number without the tail, if all vehicles move as prescribed; else about this many.
+    pub count: usize,
+}
+
+impl Steps {
+    /// As long as the settings, stability and what has to be resolved allow.
+    pub fn plan(model: &ModalBridge, courses: &[Course<'_>], settings: &Settings) -> Result<Self, Error> {
+        let length = model.shapes.mesh().length();
+        let fastest = model.fastest_frequency(courses.iter().map(|course| course.vehicle));
+        let limit = if settings.beta < 0.25 { 1.0 / (fastest * (0.25 - settings.beta).sqrt()) } else { f64::INFINITY };
+        let resolved = std::f64::consts::TAU / fastest / STEPS_PER_PERIOD;
+        let uneven = courses.iter().any(|course| !course.road.is_smooth());
+        let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
+        let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
+        let way = model.narrowest_panel / STEPS_PER_PANEL;
+        let finest = courses.iter().map(|course| course.road.finest()).fold(f64::INFINITY, f64::min);
+        let way = if uneven { way.min(WAY_PER_STEP).min(0.5 * finest) } else { way };
+        let longest = settings.step.unwrap_or(resolved.min(way / speed));
+        if longest > limit {
+            let frequency = fastest / std::f64::consts::TAU;
+            return Err(Error::StepTooLong { step: longest, beta: settings.beta, limit, frequency });
+        }
+        let span = courses.iter().map(|course| course.end(length)).fold(0.0, f64::max);
+        if !(span / longest > 0.0 && longest > 0.0) {
+            return Err(Error::input("speed", format!("{speed:e} m/s"), "too high: the crossing takes no time"));
+        }
+        if !span.is_finite() {
+            let allowed = "the vehicle must leave the bridge or come to a stop";
+            return Err(Error::input("speed", "0 m/s for good, before the end", allowed));
+        }
+        // A path of a whole number of steps is not given one more because of rounding.
+        let count = (span / longest - 1e-9).ceil().max(1.0);
+        let steps = count + settings.tail / longest;
+        if steps > MAX_STEPS as f64 {
+            let first = settings.approach / courses[0].speed.max(1e-300);
+            let late = courses.iter().map(|course| course.entry).fold(0.0, f64::max);
+            let (key, value) = match settings.step {
+                _ if settings.tail / longest > 0.5 * steps => ("tail", format!("{:e} s", settings.tail)),
+                _ if first > 0.5 * span => ("approach", format!("{:e} m", settings.approach)),
+                _ if late > 0.5 * span => ("entry", format!("{late:e} s")),
+                Some(step) => ("step", format!("{step:e} s")),
+                None => ("speed", format!("{speed:e} m/s")),
+            };
+            let mut allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
+            if settings.step.is_none() {
+                allowed += &format!(
+                    " (the default step is {longest:.3e} s, for a narrowest panel of {:.3e} m and a shortest period of \
+                     {:.3e} s; give step to choose another)",
+                    model.narrowest_panel,
+                    std::f64::consts::TAU / fastest
+                );
+            }
+            return Err(Error::input(key, value, allowed));
+        }
+        // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
+        let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
+        let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
+        let numbers = 1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles;
+        let bytes = steps * (size_of::<f64>() * numbers) as f64;
+        if bytes > MAX_HISTORY_BYTES {
+            let allowed = format!(
+                "{steps:.3e} steps would take {:.1} GB of memory, more than {:.1}: use fewer modes or a longer step",
+                bytes / 1e9,
+                MAX_HISTORY_BYTES / 1e9
+            );
+            return Err(Error::input("modes", modes, allowed));
+        }
+        Ok(Steps { h: span / count, count: count as usize })
+    }
+}
+
+/// Highest speed before the last axle has left, where speeds grow for ever [m/s].
+fn fastest_on_the_way(courses: &[Course<'_>], length: f64) -> f64 {
+    let at_end = courses.iter().map(|course| course.motion.at(course.end(length) - course.entry).v);
+    courses.iter().map(|course| course.speed).chain(at_end).filter(|v| v.is_finite()).fold(0.0, f64::max)
+}
