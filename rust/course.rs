@@ -123,7 +123,7 @@ impl<'a> Course<'a> {
         let speed = passage.speed.unwrap_or(settings.speed);
         let drive = passage.drive.as_ref().unwrap_or(&settings.drive);
         not_negative(format!("{key}entry"), passage.entry)?;
-        reasonable(format!("{key}speed"), if speed.is_nan() { 0.0 } else { speed }, "m/s")?;
+        reasonable(format!("{key}speed"), speed, "m/s")?;
         let start = -settings.approach;
         let own = |error: Error| error.within(key);
         let motion = match drive {

@@ -6,10 +6,10 @@ use crate::newmark::Coordinate;
 /// Highest speed [m/s] and acceleration [m/s²] that are not taken for a slip of the pen.
 const MOST: f64 = 1e4;
 
-/// A speed or acceleration within reason.
+/// A speed or acceleration within reason; whether it is finite is left to others.
 pub fn reasonable(key: impl Into<String>, value: f64, unit: &str) -> Result<f64, Error> {
     let key = key.into();
-    if finite(key.clone(), value)?.abs() > MOST {
+    if value.is_finite() && value.abs() > MOST {
         return Err(Error::input(key, format!("{value:e} {unit}"), format!("must be at most {MOST} {unit}")));
     }
     Ok(value)
@@ -30,7 +30,7 @@ impl Motion {
 
     /// With constant acceleration [m/s²] from time zero on; one that slows down stands in the end.
     pub fn accelerated(x: f64, speed: f64, acceleration: f64) -> Result<Self, Error> {
-        reasonable("acceleration", acceleration, "m/s2")?;
+        reasonable("acceleration", finite("acceleration", acceleration)?, "m/s2")?;
         let mut pieces = vec![(0.0, Coordinate { x, v: speed, a: acceleration })];
         if acceleration < 0.0 {
             let stop = -speed / acceleration;
