@@ -224,7 +224,7 @@ fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
         _ => Err(Error::input(
             "drive",
             format!("\"{name}\""),
-            "must be constant-speed, constant-traction, acceleration, speeds or braking",
+            "must be constant-speed or constant-traction; acceleration, speeds and braking have numbers of their own",
         )),
     }
 }
