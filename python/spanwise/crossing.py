@@ -88,13 +88,14 @@ def cross(
     step : float, optional
         Longest time step [s]. By default a twentieth of the shortest coupled period, the time in
         which the fastest vehicle passes a hundredth of the narrowest panel or, on an uneven road,
-        50 mm, whichever is least.
+        50 mm or half of its shortest edge and contact patch, whichever is least.
     beta : float, optional
         Newmark's beta: 1/6 for linear, 1/4 for constant average acceleration.
     gravity : float, optional
         Gravity [m/s2].
     lift_off : bool, optional
-        Whether wheels leave the road (default) or are held to it even if that takes tension.
+        Whether wheels leave the road (default) or are held to it even if that takes tension, as
+        masses in rigid contact always are.
     mask : float, optional
         Impact factors are not given where the static value is at most this fraction of the largest
         among the sections.

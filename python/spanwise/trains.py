@@ -77,6 +77,12 @@ class MovingMasses(Wheels):
     ------
     ValueError
         If a value is not allowed, naming it and what is.
+
+    Notes
+    -----
+    They stay in contact even where that takes tension. What would strike them is refused when they
+    cross: hinges of the bridge, kinks and jumps of the road. As a mass enters or leaves the bridge,
+    the blow of the slope that others have given it there is left out; it is small.
     """
 
     masses: Sequence[float]
