@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -100,8 +102,8 @@ def test_a_drive_is_refused_for_its_vehicle() -> None:
 
 
 def test_springs_too_soft_to_stand_on() -> None:
-    soft = sw.Support(at=0.0, vertical=1e-6)
-    supports = [soft, (10.0, "pinned"), (30.0, "pinned"), sw.Support(at=40.0, vertical=1e-6)]
+    soft, soft_end = (sw.Support(at=x, vertical=1e-6) for x in (0.0, 40.0))
+    supports: list[Any] = [soft, (10.0, "pinned"), (30.0, "pinned"), soft_end]
     bridge = sw.Bridge(length=40.0, supports=supports, EI=5e9, mass=5e3)
     with pytest.raises(ValueError, match=r"supports\[0\]\.vertical = 1e-6 N/m: must be at least"):
         bridge.modes(3)
