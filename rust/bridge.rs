@@ -156,7 +156,7 @@ impl Bridge {
 
         let held = |x: f64| supports.iter().any(|s| (s.at - x).abs() <= near && s.fixity.vertical().is_infinite());
         let mut lumps = match &layout.stations {
-            Stations::PerSpan(counts) => equal_shares(&bounds, &mass, counts)?,
+            Stations::PerSpan(counts) => equal_shares(&bounds, &hinges, &mass, counts)?,
             Stations::At(positions) => tributary_shares(&bounds, &mass, positions, &held)?,
         };
         for (i, &(at, m)) in layout.point_masses.iter().enumerate() {
@@ -392,8 +392,9 @@ fn too_many(key: &str, count: usize) -> Error {
     Error::input(key, format!("{count} stations"), format!("at most {MAX_STATIONS} mass stations in all"))
 }
 
-/// n equal shares of every span, the mass of each in its middle.
-fn equal_shares(bounds: &[f64], mass: &Distribution, counts: &[usize]) -> Result<Vec<Station>, Error> {
+/// n equal shares of every span, the mass of each in its middle. No share reaches across a hinge: between the hinges of a
+/// span the shares are as nearly equal as their number allows, one at least.
+fn equal_shares(bounds: &[f64], hinges: &[f64], mass: &Distribution, counts: &[usize]) -> Result<Vec<Station>, Error> {
     let spans = bounds.len() - 1;
     if counts.len() != 1 && counts.len() != spans {
         return Err(Error::input(
@@ -413,11 +414,26 @@ fn equal_shares(bounds: &[f64], mass: &Distribution, counts: &[usize]) -> Result
         if count == 0 && mass.integral(bounds[span], bounds[span + 1]) > 0.0 {
             return Err(Error::input("stations_per_span", 0, "must be 1 or more in a span that has mass"));
         }
-        let share = (bounds[span + 1] - bounds[span]) / count as f64;
-        stations.extend((0..count).map(|i| {
-            let from = bounds[span] + share * i as f64;
-            Station { at: bounds[span] + share * (i as f64 + 0.5), mass: mass.integral(from, from + share) }
-        }));
+        if count == 0 {
+            continue;
+        }
+        let (start, end) = (bounds[span], bounds[span + 1]);
+        let mut cuts = vec![start];
+        cuts.extend(hinges.iter().filter(|&&x| x > start && x < end));
+        cuts.push(end);
+        let pieces = cuts.len() - 1;
+        let (mut begun, count) = (0, count.max(pieces));
+        for (k, piece) in cuts.windows(2).enumerate() {
+            let wanted = ((piece[1] - start) / (end - start) * count as f64).round() as usize;
+            let ended = wanted.clamp(begun + 1, count + k + 1 - pieces);
+            let shares = ended - begun;
+            let share = (piece[1] - piece[0]) / shares as f64;
+            stations.extend((0..shares).map(|i| {
+                let from = piece[0] + share * i as f64;
+                Station { at: piece[0] + share * (i as f64 + 0.5), mass: mass.integral(from, from + share) }
+            }));
+            begun = ended;
+        }
     }
     Ok(stations)
 }

@@ -4,7 +4,8 @@ mod problems;
 
 use problems::answers::uniform_bridges;
 use problems::*;
-use spanwise::bridge::{Bridge, Stations};
+use spanwise::along::Along;
+use spanwise::bridge::{Bridge, Layout, Stations};
 use spanwise::error::Error;
 use spanwise::flexibility::{Flexibility, Structure};
 use spanwise::modes::Modes;
@@ -210,5 +211,31 @@ fn nearly_repeated_frequencies() {
                 assert!(rest <= NEARLY_REPEATED, "gap {gap:e}, mode {}: {phi:?}", mode + 1);
             }
         }
+    }
+}
+
+/// No share of the mass reaches across a hinge, wherever it stands: else the frequencies would jump with the number of
+/// shares as the mass of one of them changed sides.
+#[test]
+fn shares_end_at_hinges() {
+    let lowest = |count: usize| {
+        let layout = Layout {
+            length: 95.0,
+            supports: [0.0, 30.0, 65.0, 95.0].map(pinned).to_vec(),
+            hinges: vec![45.0],
+            flexural_rigidity: Along::PerSpan(vec![2e10]),
+            mass: Along::PerSpan(vec![9e3]),
+            stations: Stations::PerSpan(vec![count]),
+            point_masses: vec![],
+        };
+        let bridge = Bridge::from_layout(layout).unwrap();
+        Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 1).unwrap().omega[0]
+    };
+    let exact = lowest(160);
+    // Second order, without jumps: the constant is that of six shares, with a fifth to spare.
+    for count in 6..=13 {
+        let error = lowest(count) / exact - 1.0;
+        println!("{count} shares a span: {:+.3} %", 100.0 * error);
+        assert!(error > 0.0 && error < 0.58 / (count * count) as f64, "{count} shares a span: {error:e}");
     }
 }
