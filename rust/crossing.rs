@@ -114,18 +114,18 @@ pub fn cross_all(
         let (course, own) = own(axle);
         course.axle(own, step as f64 * steps.h, length)
     };
+    // Whether forces follow rates, and with them the slopes of the modes.
+    let rates = courses.iter().flat_map(|c| &c.vehicle.assembly().contacts).any(|contact| !contact.law.is_plain());
     if courses.iter().any(|course| course.rolls) {
         let free = |step: usize, axle: usize| (!own(axle).0.rolls).then(|| motion(step, axle));
         let mirrored = courses.iter().map(|course| course.direction == Direction::Left).collect();
         let start = (0..owner.len()).map(|axle| motion(0, axle)).collect();
-        let mut geometry = Free::new(ground, free, mirrored, start);
+        let mut geometry = Free::new(ground, free, mirrored, start, rates);
         March::new(model, &courses, settings, &steps).run(&mut geometry, &Free::stop, go_on)
     } else {
         // One more than needed, so that rounding of the tail does not matter.
         let with_tail = steps.count + (settings.tail / steps.h).ceil() as usize + 1;
-        let plain = |law: &crate::assembly::ContactLaw| law.is_plain();
-        let slopes = !courses.iter().flat_map(|c| &c.vehicle.assembly().contacts).all(|contact| plain(&contact.law));
-        let mut geometry = Prescribed::new(ground, motion, with_tail, slopes);
+        let mut geometry = Prescribed::new(ground, motion, with_tail, rates);
         March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), go_on)
     }
 }

@@ -9,6 +9,13 @@ use crate::step::{Geometry, Surface};
 /// Jump of a slope, relative to the steepest, from which on it is a kink and not rounding.
 const KINK: f64 = 1e-6;
 
+/// Change of an axle's position, relative to the length of the bridge, at which it counts as placed. The guess from the last
+/// accelerations is off by the cube of the step, so that this takes nothing from the order.
+const PLACED: f64 = 1e-9;
+
+/// The same where forces follow the speed of the axle too, which is off by the square of the step.
+const PLACED_BY_RATES: f64 = 1e-11;
+
 /// The included modes along the bridge, laid out for evaluation at one point after another.
 #[derive(Debug, Clone)]
 pub struct ModeShapes {
@@ -242,7 +249,7 @@ pub struct Free<'a, M> {
     step: usize,
     /// Whether a vehicle travels to the left.
     mirrored: Vec<bool>,
-    /// Change of position [m] from pass to pass at which an axle counts as placed: what remains is far less.
+    /// Change of position [m] from the guess, or from pass to pass, at which an axle counts as placed.
     tolerance: f64,
     motions: Vec<Coordinate<f64>>,
     /// The panel of each contact, from its predicted position and held through the step, so that passes converge.
@@ -253,11 +260,11 @@ pub struct Free<'a, M> {
 }
 
 impl<'a, M: Fn(usize, usize) -> Option<Coordinate<f64>>> Free<'a, M> {
-    /// With the contacts at `start`, in the direction of the bridge.
-    pub fn new(ground: Ground<'a>, motion: M, mirrored: Vec<bool>, start: Vec<Coordinate<f64>>) -> Self {
+    /// With the contacts at `start`, in the direction of the bridge; `rates` tells whether forces follow rates too.
+    pub fn new(ground: Ground<'a>, motion: M, mirrored: Vec<bool>, start: Vec<Coordinate<f64>>, rates: bool) -> Self {
         let (contacts, modes) = (start.len(), ground.shapes.modes);
         let mut path = Free {
-            tolerance: 1e-11 * ground.shapes.mesh.length(),
+            tolerance: if rates { PLACED_BY_RATES } else { PLACED } * ground.shapes.mesh.length(),
             ground,
             motion,
             step: 0,

@@ -156,8 +156,10 @@ impl<L: Lane> Rig<L> {
         sum
     }
 
-    /// The coordinates without accelerations at the end of the step.
-    pub fn predicted(&self) -> &[Coordinate<L>] {
-        &self.predicted
+    /// The coordinates at the end of the step if their accelerations stayed as they were in `state`.
+    pub fn guess(&self, newmark: &Newmark<L>, state: &[Coordinate<L>], guess: &mut [Coordinate<L>]) {
+        for ((guess, predicted), before) in guess.iter_mut().zip(&self.predicted).zip(state) {
+            *guess = newmark.correct(*predicted, before.a);
+        }
     }
 }

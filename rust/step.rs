@@ -14,11 +14,15 @@ use crate::modal::{ModalDamping, ModalSolve};
 use crate::newmark::{Coordinate, Newmark};
 use crate::rig::Rig;
 
-/// Most passes in which axle positions and surge follow the corrected state; two or three are usual.
+/// Most passes in which axle positions and surge follow the corrected state; one or two are usual.
 const PASSES: usize = 50;
 
-/// Change of the surge [m/s²] from pass to pass at which it counts as found: what remains is a small fraction of it.
-const SURGE_SETTLED: f64 = 1e-8;
+/// Change of the surge [m/s²] from pass to pass at which it counts as found: it comes back to itself through the pitch of
+/// the vehicles and the slope of the bridge, times β h², so what remains is some millionths of it.
+const SURGE_SETTLED: f64 = 1e-5;
+
+/// The same where forces follow rates too, which are off by the square of the step.
+const SURGE_SETTLED_BY_RATES: f64 = 1e-8;
 
 /// The road under a wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +82,8 @@ pub struct State<L> {
     pub strokes: Vec<Stroke<L>>,
     /// Forces along the road at the contacts, in the direction of travel [N].
     pub along: Vec<L>,
+    /// The same a step before, from which the next are guessed.
+    pub along_before: Vec<L>,
 }
 
 /// How hard a vehicle brakes.
@@ -171,6 +177,8 @@ pub struct Stepper<L> {
     elements: Elements<L>,
     predicted: Vec<Coordinate<L>>,
     travel: Vec<Coordinate<L>>,
+    guess: Vec<Coordinate<L>>,
+    surge_settled: L,
     along: Vec<L>,
     /// Modal accelerations without axle loads, and under the static ones.
     free: Vec<L>,
@@ -221,6 +229,7 @@ impl<L: Lane> Stepper<L> {
             rubbing: frictions.map(|element| Rubbing::new(element, h)).collect(),
         };
         let (modes, n, zero) = (omega.len(), elements.len(), L::splat(0.0));
+        let plain = elements.contacts.iter().all(|contact| contact.weights.plain);
         Stepper {
             newmark: Newmark::new(h, beta),
             omega2: omega.iter().map(|w| L::splat(w * w)).collect(),
@@ -229,6 +238,8 @@ impl<L: Lane> Stepper<L> {
             elements,
             predicted: vec![Coordinate::rest(); modes],
             travel: vec![Coordinate::rest(); vehicles.len()],
+            guess: vec![Coordinate::rest(); vehicles.iter().map(|v| v.assembly.mass.nrows()).max().unwrap_or(0)],
+            surge_settled: L::splat(if plain { SURGE_SETTLED } else { SURGE_SETTLED_BY_RATES }),
             along: vec![zero; contacts],
             free: vec![zero; modes],
             loaded: vec![zero; modes],
@@ -257,6 +268,7 @@ impl<L: Lane> Stepper<L> {
             increments: vec![zero; self.elements.len()],
             strokes: contacts.chain(self.elements.rubbing.iter().map(|r| r.at_rest())).collect(),
             along: vec![zero; self.elements.contacts.len()],
+            along_before: vec![zero; self.elements.contacts.len()],
         };
         self.predict(&state);
         self.push_along(&mut state, geometry);
@@ -275,6 +287,7 @@ impl<L: Lane> Stepper<L> {
         for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&self.offset) {
             *stroke = contact.at_onset(*delta);
         }
+        state.along_before.copy_from_slice(&state.along);
         Ok(state)
     }
 
@@ -300,10 +313,15 @@ impl<L: Lane> Stepper<L> {
             self.settle(state);
             return Ok(());
         }
-        for ((unit, travel), predicted) in self.units.iter().zip(&state.travel).zip(&mut self.travel) {
-            *predicted = self.newmark.predict(*travel);
+        self.guess_along(state);
+        for (u, unit) in self.units.iter().enumerate() {
+            self.travel[u] = self.newmark.predict(state.travel[u]);
             if unit.propulsion == Propulsion::Rolling {
-                place(unit, *predicted, unit.rig.predicted(), geometry, true);
+                let guess = &mut self.guess[..unit.rig.size];
+                unit.rig.guess(&self.newmark, &state.coordinates[unit.coordinates.clone()], guess);
+                let force = unit.contacts.clone().fold(L::splat(0.0), |sum, contact| sum + state.along[contact]);
+                let travel = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
+                place(unit, travel, guess, geometry, true);
             }
         }
         self.push_along(state, geometry);
@@ -325,7 +343,7 @@ impl<L: Lane> Stepper<L> {
                 state.travel[u] = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
                 let coordinates = &state.coordinates[unit.coordinates.clone()];
                 moving = moving | place(unit, state.travel[u], coordinates, geometry, false);
-                moving = moving | !change.less(L::splat(SURGE_SETTLED) * unit.rig.total_mass);
+                moving = moving | !change.less(self.surge_settled * unit.rig.total_mass);
             }
             // A settled lane is left as it is, so that further passes repeat it bit for bit.
             settled = !moving;
@@ -356,6 +374,17 @@ impl<L: Lane> Stepper<L> {
             self.forces[m] = -resisting;
         }
         self.modal.apply(&self.forces, &mut self.free);
+    }
+
+    /// Forces along the road as they go on from the last two steps, where vehicles roll.
+    fn guess_along(&self, state: &mut State<L>) {
+        for unit in self.units.iter().filter(|unit| unit.propulsion == Propulsion::Rolling) {
+            for contact in unit.contacts.clone() {
+                let now = state.along[contact];
+                state.along[contact] = now + (now - state.along_before[contact]);
+                state.along_before[contact] = now;
+            }
+        }
     }
 
     /// Forces along the road to begin with: those that prescribed motion takes, or those of the last step.
