@@ -344,7 +344,14 @@ class Bridge:
         Raises
         ------
         ValueError
-            If a value is not allowed, naming it and what is.
+            If a value is not allowed, naming it and what is; if the modes deflect a section more
+            than its influence line of deflection, of which they are a part.
+
+        Warns
+        -----
+        UserWarning
+            If the modes explain very little of the lines of deflection, as with frequencies in
+            rad/s.
         """
         given: dict[str, Any] = {
             "path": numbers("path", path),
@@ -353,12 +360,19 @@ class Bridge:
             "supports": supports_of("supports", supports),
             "masses": None if masses is None else numbers("masses", masses),
         }
+        both = _given.sides("shapes", shapes)
+        lines = _given.influence_lines(influence, influence_slopes, modal)
         core = _core.Bridge.from_modes(
             **given,
-            shapes=_given.sides("shapes", shapes),
+            shapes=both,
             slopes=None if slopes is None else _given.sides("slopes", slopes),
-            influence=_given.influence_lines(influence, influence_slopes, modal),
+            influence=lines,
         )
+        for quantity, (values, _), *_ in lines:
+            if quantity == "deflection":
+                _given.check_flexibility(
+                    given["path"], given["frequencies"], both[0], given["sections"], values
+                )
         arrays = {
             "shapes": shapes,
             "slopes": slopes,
