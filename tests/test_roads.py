@@ -351,6 +351,13 @@ def test_points_out_of_order_and_double(tmp_path: Path) -> None:
     assert_allclose(road.elevations, [0.1, 0.2, 0.4, 0.1], rtol=EXACT)
 
 
+def test_a_road_too_short_for_the_path() -> None:
+    bridge = sw.Bridge(spans=[20.1], EI=4e9, mass=8e3)
+    road = sw.Profile(5.1 * np.arange(5), np.zeros(5) + 1e-3 * np.arange(5) ** 2)
+    with pytest.raises(ValueError, match=r"only 0 m to 20\.4 m; shorten the approach or the tail"):
+        sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0, road=road)
+
+
 def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:
     x = np.arange(0.0, 100.0, 0.5)
     best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "H"))
