@@ -95,7 +95,7 @@ pub enum Error {
 impl Error {
     /// An [`Error::Input`] from its parts.
     pub fn input(key: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
-        Error::Input { key: key.into(), value: value.to_string(), allowed: allowed.into() }
+        Error::Input { key: key.into(), value: tidy(&value.to_string()), allowed: tidy(&allowed.into()) }
     }
 
     /// The same about one of several: `place` goes in front of the name of what is refused.
@@ -113,6 +113,26 @@ impl Error {
             Error::Input { .. } | Error::Unstable { .. } | Error::Mechanism { .. } | Error::StepTooLong { .. }
         )
     }
+}
+
+/// The text with numbers that bear the rounding of their last digits rounded to twelve: 5.1, not 5.100000000000001.
+fn tidy(text: &str) -> String {
+    const TOO_MANY: usize = 15;
+    let is_part = |c: char| c.is_ascii_digit() || c == '.';
+    let mut tidied = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let number = &rest[start..];
+        let number = &number[..number.find(|c| !is_part(c)).unwrap_or(number.len())];
+        tidied.push_str(&rest[..start]);
+        let digits = number.trim_start_matches(['0', '.']).len();
+        match number.parse::<f64>().and_then(|value| format!("{value:.11e}").parse::<f64>()) {
+            Ok(value) if number.contains('.') && digits > TOO_MANY => tidied.push_str(&value.to_string()),
+            _ => tidied.push_str(number),
+        }
+        rest = &rest[start + number.len()..];
+    }
+    tidied + rest
 }
 
 /// `value`, if it is finite.
@@ -135,5 +155,19 @@ pub fn not_negative(key: impl Into<String>, value: f64) -> Result<f64, Error> {
         Ok(value)
     } else {
         Err(Error::input(key, value, "must be finite and 0 or more"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tidy;
+
+    #[test]
+    fn numbers_lose_their_rounding_only() {
+        let text = "5.100000000000001 m, x[12] = -0.30000000000000004 m.";
+        assert_eq!(tidy(text), "5.1 m, x[12] = -0.3 m.");
+        for same in ["", "1.25", "1.0000000000001 m", "100000000000000000000", "to 0.1 (0.000001 µm) 3", "1e-300."] {
+            assert_eq!(tidy(same), same);
+        }
     }
 }

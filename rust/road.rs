@@ -134,7 +134,13 @@ impl Road {
 
     /// Refuses a path from `from` to `to` [m] on which the road is not known everywhere, or repeats.
     pub fn check_covers(&self, from: f64, to: f64) -> Result<(), Error> {
-        self.check_holds(from, to)?;
+        self.check_holds(from, to).map_err(|error| match error {
+            Error::Input { key, value, allowed } => {
+                let allowed = allowed + "; shorten the approach or the tail, or give a longer road";
+                Error::Input { key, value, allowed }
+            }
+            other => other,
+        })?;
         let period = self.period();
         if to - from > period {
             let allowed =

@@ -138,6 +138,8 @@ def test_settlement() -> None:
         assert_allclose(found.reactions, np.array([1, -2, 1]) * moment / length, rtol=EXACT)
         shear = moment / length
         assert_allclose(found.shear, [[shear, shear], [shear, -shear]], rtol=EXACT)
+    assert repr(found).startswith("Settlement(2 sections, 3 supports; deflection 0 to 20 mm, mom")
+    assert len(repr(found)) < 200
     assert_array_equal(bridge.settlement([0, 0, 0]).sections, bridge.default_sections())
     with pytest.raises(ValueError, match=r"settlements position = 7 m: must be a support, 0, 15"):
         bridge.settlement({7.0: delta})

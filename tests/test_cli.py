@@ -162,6 +162,19 @@ def test_road(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     err = capsys.readouterr().err
     assert err.count("\n") == 1
     assert "covers only" in err
+    other = tmp_path / "mm.csv"
+    other.write_text("a;z;x\n" + "".join(f"0;{1e3 * float(road.elevation(a))};{a}\n" for a in x))
+    at = ["road", str(other), "--delimiter", ";", "--end", "150", "--max-gap", "0.5"]
+    assert main([*at, "--columns", "x", "z", "--scale", "1", "1e-3"]) == 0
+    found = capsys.readouterr()
+    assert "class C" in found.out
+    assert found.err == ""
+    assert main([*at, "--columns", "2", "1"]) == 0
+    err = capsys.readouterr().err
+    assert err.startswith("spanwise: warning: elevations: their median slope is")
+    assert err.count("\n") == 1
+    assert main(["road", str(case), "--scale", "1", "1e-3"]) == 2
+    assert "--scale: used with CSV files only" in capsys.readouterr().err
 
 
 def test_figures_of_traffic(tmp_path: Path) -> None:

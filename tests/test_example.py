@@ -28,8 +28,8 @@ FIGURES = (
 )
 
 
-def load() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("kishan_1973", EXAMPLES / "kishan_1973.py")
+def load(name: str = "kishan_1973") -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -70,3 +70,29 @@ def test_case_is_the_published_one_to_the_digits_given() -> None:
     np.testing.assert_allclose(bridge["spans"], [60.0 * foot] * 2, rtol=1e-12)
     assert bridge["EI"] == pytest.approx(4.698e9 * pound * foot**2, rel=1e-9)
     assert bridge["mass"] == pytest.approx(126.1 * pound / foot**2, rel=1e-9)
+
+
+def test_impact_factors_by_class(capsys: pytest.CaptureFixture[str]) -> None:
+    load("impact_factors_by_class").main()
+    _, head, *rows = capsys.readouterr().out.splitlines()
+    assert head.split() == [
+        "class",
+        *(w for k in range(5) for w in ("seed", str(k))),
+        "mean",
+        "max",
+    ]
+    assert [row.split()[0] for row in rows] == list("ABCD")
+    for row in rows:
+        *factors, mean, largest = map(float, row.split()[1:])
+        assert mean == pytest.approx(np.mean(factors), abs=1e-3)
+        assert largest == max(factors)
+
+
+def test_haunches_bearing_and_hinges_of_a_case() -> None:
+    case = sw.Case.read(EXAMPLES / "gerber.toml")
+    run = case.run(modes=4)
+    for hinge in (27.0, 43.0):
+        (at,) = np.flatnonzero(run.sections == hinge)
+        assert np.abs(run.moment[:, at]).max() < 1e-9 * np.abs(run.moment).max()
+    settled = case.bridge.settlement({20.0: 0.01})
+    assert settled.reactions.sum() == pytest.approx(0.0, abs=1e-3)

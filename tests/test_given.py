@@ -388,3 +388,36 @@ def test_refusals(make: Any, changes: dict[str, Any], words: tuple[str, ...]) ->
         make(**changes)
     for each in words:
         assert each in str(raised.value), f"{each!r} not in {raised.value}"
+
+
+def imported(**changes: Any) -> sw.Bridge:
+    """A simple span with lines of deflection, by a third of its modes."""
+    bridge = sw.Bridge(spans=[20.0], EI=2e9, mass=6e3, stations_per_span=9)
+    path = np.unique(np.append(bridge.nodes, 10.0))
+    path = path[np.append(True, np.diff(path) > 1e-9)]
+    given = {
+        "path": path.tolist(),
+        "frequencies": bridge.modes(3).frequencies,
+        "shapes": bridge.mode_shapes(3, path),
+        "sections": path.tolist(),
+        "influence": {"deflection": bridge.deflections(path, path.tolist()).T},
+    }
+    for key, change in changes.items():
+        given[key] = change(given[key])
+    return sw.Bridge.from_modes(**given)
+
+
+def test_modes_and_lines_of_deflection_are_of_one_bridge() -> None:
+    imported()
+    # What two digits do.
+    imported(frequencies=lambda f: np.round(f, 1), shapes=lambda shapes: np.round(shapes, 4))
+    with pytest.raises(ValueError, match=r"influence deflection = -.*positive down: change"):
+        imported(influence=lambda lines: {"deflection": -lines["deflection"]})
+    # Largest ordinate 1; unit modal mass in tonnes.
+    for scale in (lambda shapes: shapes / shapes.max(axis=0), lambda shapes: 31.6 * shapes):
+        with pytest.raises(ValueError, match=r"shapes: the modes alone.*not scaled to unit modal"):
+            imported(shapes=scale)
+    with pytest.raises(ValueError, match=r"shapes: .*frequencies are too low"):
+        imported(frequencies=lambda f: f / (2.0 * np.pi))
+    with pytest.warns(UserWarning, match=r"frequencies: the modes explain at most 2.5 %.*rad/s"):
+        imported(frequencies=lambda f: 2.0 * np.pi * f)

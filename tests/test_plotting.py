@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 
 import spanwise as sw
 from spanwise.plotting import compare_convergence, compare_impact_factors
-from spanwise.plotting.envelope import cut_at_supports
+from spanwise.plotting.envelope import branches
 from spanwise.plotting.style import LINES, MEASURES
 from spanwise.run import QUANTITIES, Quantity
 
@@ -287,16 +287,16 @@ def test_models_of_traffic_are_drawn_lane_by_lane(traffic: Traffic) -> None:
 def test_motions_of_traffic(traffic: Traffic) -> None:
     plot, run = traffic.run.plot, traffic.run
     first, second, third = (plot.vehicle(number) for number in (1, 2, 3))
-    check(first, "mm", "mrad", "kN", "m/s", "m")
-    check(second, "mm", "kN", "m/s", "m")
+    check(first, "mm", "mrad", "kN", "m")
+    check(second, "mm", "kN", "m")
     check(third, "mm", "mrad", "kN", "m/s", "m")
     assert "Heave" not in labels(second)
     for figure in (first, second, third):
         assert "Road under\naxle 1 [mm]" in labels(figure)
     assert "bands: the wheel is off the road" in labels(first)
-    # Heave, pitch, loads of three axles, road, speed.
+    # Heave, pitch, loads of three axles, road.
     bands = [len(ax.patches) for ax in first.axes]
-    assert bands == [0, 0, *run.off_road.count[:3], 0, 0]
+    assert bands == [0, 0, *run.off_road.count[:3], 0]
     for bad in (0, 4):
         with pytest.raises(ValueError, match=f"number = {bad}: must be 1 to 3"):
             plot.vehicle(bad)
@@ -377,14 +377,58 @@ def test_comparisons(two_spans: Scene) -> None:
     check(compare_convergence([1, 2], errors, reference="all modes"), "-")
 
 
-def test_shear_is_cut_on_the_side_of_a_support_that_it_does_not_fit() -> None:
+def test_shear_meets_its_supports_from_both_sides() -> None:
     x = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
-    falling = np.array([4.0, 1.0, 5.0, 4.0, 1.0])
-    cut_x, cut_y = cut_at_supports(x, falling, np.array([0.0, 2.0, 4.0]))
-    np.testing.assert_array_equal(cut_x, [0.0, 1.0, 2.0, 2.0, 3.0, 4.0])
-    np.testing.assert_array_equal(cut_y, [4.0, 1.0, np.nan, 5.0, 4.0, 1.0])
-    _, mirrored = cut_at_supports(x, -falling[::-1], np.array([2.0]))
-    np.testing.assert_array_equal(mirrored, [-1.0, -4.0, -5.0, np.nan, -1.0, -4.0])
+    y = np.array([4.0, 1.0, 5.0, 4.0, 1.0])
+    sides = np.column_stack([y, y])
+    sides[2] = 0.5, 5.0
+    cut_x, cut_y = branches(x, y, sides, np.array([0.0, 2.0, 4.0]))
+    np.testing.assert_array_equal(cut_x, [0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 4.0])
+    np.testing.assert_array_equal(cut_y, [4.0, 1.0, 0.5, np.nan, 5.0, 4.0, 1.0])
+
+
+@pytest.fixture(scope="module")
+def hinged() -> sw.Run:
+    bridge = sw.Bridge(spans=[20.0, 30.0, 20.0], hinges=[28.0], EI=4e9, mass=8e3)
+    return sw.cross(bridge, truck(2.0, -2.0), speed=20.0, road=sw.ISO8608("B"), step=2e-3)
+
+
+def rings(ax: Axes) -> list[float]:
+    """Where open circles are."""
+    lines = [each for each in ax.lines if each.get_markerfacecolor() == "white"]
+    return [float(x) for each in lines for x in np.asarray(each.get_xdata())]
+
+
+def test_hinges_are_rings(hinged: sw.Run) -> None:
+    bridge = hinged.bridge
+    for figure in (
+        bridge.plot.modes(2),
+        bridge.plot.influence_line("moment", 35.0),
+        hinged.plot.envelope("shear"),
+        bridge.settlement({20.0: 0.02}).plot(),
+    ):
+        check(figure, "m")
+        for ax in figure.axes:
+            assert rings(ax) == [28.0]
+
+
+def test_road_where_wheels_pass(hinged: sw.Run) -> None:
+    figure = hinged.plot.road()
+    check(figure, "m", "mm")
+    left, right = figure.axes[0].get_xlim()
+    positions = hinged.vehicles[0].axle_positions
+    assert left == pytest.approx(positions.min())
+    assert right == pytest.approx(positions.max())
+
+
+def test_what_says_nothing_is_not_drawn() -> None:
+    bridge = sw.Bridge(spans=[20.0], EI=4e9, mass=8e3, stations_per_span=4)
+    run = sw.cross(bridge, truck(2.0, -2.0), speed=20.0, drive="constant-speed", step=2e-3)
+    figure = run.plot.vehicle()
+    assert "m/s" not in " ".join(ax.get_ylabel() for ax in figure.axes)
+    assert figure.axes[-1].get_xlabel() == "Time [s]; at 20 m/s throughout"
+    hogging = run.plot.impact_factors().axes[2]
+    assert "blank everywhere" in [text.get_text() for text in hogging.texts]
 
 
 Draw = Callable[[Scene, Any], matplotlib.figure.Figure]

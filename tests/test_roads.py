@@ -102,6 +102,20 @@ def test_roads_add_up() -> None:
         bump + 1.0
 
 
+@pytest.mark.parametrize("road", every_kind(), ids=lambda road: str(road.kind))
+def test_roads_times_a_number(road: sw.roads.Road) -> None:
+    x = np.linspace(-10.0, 50.0, 24)
+    once = road.elevation(x)
+    for twice in (2 * road, road * 2.0):
+        assert_allclose(twice.elevation(x), 2 * once, rtol=EXACT, atol=1e-12)
+    assert (0 * road).is_smooth
+    both = sum([road, road])
+    assert isinstance(both, sw.roads.Road)
+    assert_array_equal(both.elevation(x), (road + road).elevation(x))
+    with pytest.raises(TypeError):
+        road * road
+
+
 def test_profiles_pass_through_their_points() -> None:
     road = measured(contact_patch=0.0)
     assert_allclose(road.elevation(X), road.elevations, rtol=0, atol=1e-16)
@@ -158,6 +172,18 @@ def test_density_of_waves() -> None:
     assert density[near].sum() * n[0] == pytest.approx(0.02**2 / 2, rel=1e-3)
     assert density[~near].sum() < 1e-5 * density.sum()
     assert n[np.argmax(density)] == pytest.approx(0.5)
+
+
+def test_the_window_does_not_change_the_variance() -> None:
+    # Waves of at most 5 m in segments of 50 m; over 20 roads within 2 %.
+    parts = []
+    for sample in range(20):
+        road = sw.ISO8608("B", band=(0.2, 4.0), sample=sample)
+        n, density = road.psd(0.0, 500.0, segment=50.0)
+        variance = road.surface.elevation(np.arange(0.0, 500.0, 0.05)).var()
+        parts.append(density.sum() * n[0] / variance)
+    print(f"{np.mean(parts):.4f}")
+    assert np.mean(parts) == pytest.approx(1.0, abs=0.02)
 
 
 def test_density_of_random_roads() -> None:
@@ -228,12 +254,12 @@ def test_roads_are_values(road: sw.roads.Road) -> None:
 
 def test_points_cannot_be_changed() -> None:
     x = X.copy()
-    road = sw.Profile(x, x)
+    road = sw.Profile(x, 0.1 * X)
     x[3] = 1e3
-    assert road == sw.Profile(X, X)
+    assert road == sw.Profile(X, 0.1 * X)
     with pytest.raises(ValueError, match="read-only"):
         road.x[3] = 1e3
-    assert repr(road).startswith("Profile(321 points from -20.0 m to 60.0 m")
+    assert repr(road).startswith("Profile(321 points from -20 m to 60 m")
 
 
 def test_numbers_are_kept_as_they_are_understood() -> None:
@@ -264,14 +290,15 @@ def test_tables() -> None:
 def test_profiles_from_files(tmp_path: Path) -> None:
     file = tmp_path / "road.csv"
     file.write_text(
-        "# surveyed\nplace,left,right\n\n" + "".join(f"{x},0,{x**2}\n" for x in range(6))
+        "# surveyed\nplace,left,right\n\n" + "".join(f"{x},0,{0.01 * x**2}\n" for x in range(6))
     )
     road = sw.Profile.read_csv(file, columns=("place", "right"), scale=(1.0, 1e-3), detrend=True)
     x = np.arange(6.0)
-    assert road == sw.Profile(x, 1e-3 * x**2, detrend=True)
-    assert sw.Profile.read_csv(file, columns=(0, 2)) == sw.Profile(x, x**2)
+    z = np.array([float(f"{0.01 * each**2}") for each in range(6)])
+    assert road == sw.Profile(x, 1e-3 * z, detrend=True)
+    assert sw.Profile.read_csv(file, columns=(0, 2)) == sw.Profile(x, z)
     table = {"kind": "profile", "file": str(file), "columns": [0, 2], "contact_patch": 0.1}
-    assert sw.roads.from_table(table) == sw.Profile(x, x**2, contact_patch=0.1)
+    assert sw.roads.from_table(table) == sw.Profile(x, z, contact_patch=0.1)
     file.write_text("0;1\n1;1\n2;1\n3;1\n")
     assert sw.Profile.read_csv(file, delimiter=";") == sw.Profile(x[:4], np.ones(4))
 
@@ -281,7 +308,13 @@ def test_profiles_from_files(tmp_path: Path) -> None:
     [
         ("0,1\n1,2\n2,x\n3,1\n", {}, ("line 3", "'x'", "not a number")),
         ("0,1\n1\n2,2\n", {}, ("line 2", "1 columns", "column 1")),
-        ("0,1\n1,1\n1,1\n2,1\n", {}, ("x[2] = 1 m", "greater than")),
+        ("0,1\n1,1\n1,1\n2,1\n", {}, ("road.csv, line 3", "x[2] = 1 m", '"mean"')),
+        ("0,1\n\n2,1\n1,1\n3,1\n", {}, ("road.csv, line 4", "x[2] = 1 m", "sort = true")),
+        ("x,z\n0,1\n1,1\n2,1\n9,1\n", {}, ("road.csv, line 5", "x[3] = 9 m", "max_gap = 5 m")),
+        ("0;1\n1,5;2\n", {"delimiter": ";"}, ("line 2", "'1,5'", "point, not a comma")),
+        ("0;1\n1;2\n", {}, ("line 2", "delimiter ';'")),
+        ("0,5;1,5\n1,5;2,5\n", {}, ("line 1", "'5;1'", "delimiter ';'")),
+        ("0,1\n", {"duplicates": "first"}, ("duplicates = 'first'", "refuse or mean")),
         ("0,1\n1,nan\n2,1\n3,1\n", {}, ("elevations[1] = NaN", "finite")),
         ("x,r\n0,1\n", {"columns": ("x", "R")}, ("columns[1] = 'R'", "x, r", "did you mean 'r'")),
         ("0,1\n", {"columns": ("x", "r")}, ("columns[0] = 'x'", "no line of names")),
@@ -289,7 +322,7 @@ def test_profiles_from_files(tmp_path: Path) -> None:
         ("0,1\n", {"columns": 3}, ("columns[0] = 3", "pair")),
         ("0,1\n", {"delimiter": ", "}, ("delimiter = ', '", "one character")),
         ("0,1\n", {"scale": 1.0}, ("scale = 1.0", "two factors")),
-        ("", {}, ("x = 0 points", "4 or more")),
+        ("", {}, ("road.csv: x = 0 points", "4 or more")),
     ],
 )
 def test_bad_files(tmp_path: Path, text: str, options: Any, parts: tuple[str, ...]) -> None:
@@ -308,6 +341,34 @@ def test_files_that_are_not_there_or_not_text(tmp_path: Path) -> None:
     file.write_bytes(b"\xff\xfe\x00\xd8")
     with pytest.raises(ValueError, match="not a file of separated values"):
         sw.Profile.read_csv(file)
+
+
+def test_points_out_of_order_and_double(tmp_path: Path) -> None:
+    file = tmp_path / "road.csv"
+    file.write_text("0,1\n2,3\n1,2\n2,5\n3,1\n")
+    road = sw.Profile.read_csv(file, sort=True, duplicates="mean", scale=(1, 0.1))
+    assert_array_equal(road.x, [0, 1, 2, 3])
+    assert_allclose(road.elevations, [0.1, 0.2, 0.4, 0.1], rtol=EXACT)
+
+
+def test_a_road_too_short_for_the_path() -> None:
+    bridge = sw.Bridge(spans=[20.1], EI=4e9, mass=8e3)
+    road = sw.Profile(5.1 * np.arange(5), np.zeros(5) + 1e-3 * np.arange(5) ** 2)
+    with pytest.raises(ValueError, match=r"only 0 m to 20\.4 m; shorten the approach or the tail"):
+        sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0, road=road)
+
+
+def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:
+    x = np.arange(0.0, 100.0, 0.5)
+    best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "H"))
+    sw.Profile(x, worst)
+    with pytest.warns(UserWarning, match=r"elevations: their median slope is .*in mm\?.*scale"):
+        sw.Profile(x, 1e3 * best)
+    file = tmp_path / "road.csv"
+    file.write_text("".join(f"{a},{1e3 * b}\n" for a, b in zip(x, best, strict=True)))
+    with pytest.warns(UserWarning, match="in mm"):
+        sw.Profile.read_csv(file)
+    sw.Profile.read_csv(file, scale=(1.0, 1e-3))
 
 
 # Refusals.
@@ -373,6 +434,8 @@ REFUSALS: list[Refusal] = [
     (lambda: sw.Pothole(0.0, 1.0, 0.1, edge=0.6), ("edge = 0.6 m", "half the length, 0.5 m")),
     (lambda: sw.Pothole(0.0, 1.0, inf), ("depth = inf", "finite")),
     (lambda: sw.Joint(0.0, -0.1, 0.1), ("gap = -0.1", POSITIVE)),
+    (lambda: sw.Step(0.0, 0.1) * -1, ("factor = -1", NOT_NEGATIVE)),
+    (lambda: inf * sw.Step(0.0, 0.1), ("factor = inf", "finite")),
     (lambda: sw.roads.Sum([1.0]), ("parts[0] = 1.0", "road")),  # type: ignore[arg-type]
     (lambda: measured().elevation(61.0), ("path from 61 m to 61 m", "-20 m to 60 m")),
     (lambda: measured().slope([0.0, -21.0]), ("path from -21 m", "-20 m to 60 m")),
@@ -380,11 +443,11 @@ REFUSALS: list[Refusal] = [
     (lambda: measured().iri(0.0, 61.0), ("path from 0 m to 61 m", "-20 m to 60 m")),
     (lambda: measured().iri(0.0, 10.0), ("end = 10 m", "11 to 100000 m beyond start, 0 m")),
     (lambda: sw.Smooth().iri(0.0, 1e12), ("end = 1000000000000 m", "11 to 100000 m")),
-    (lambda: measured().psd(5.0, 5.0), ("end = 5.0 m", "greater than start, 5.0 m")),
+    (lambda: measured().psd(5.0, 5.0), ("end = 5 m", "greater than start, 5 m")),
     (lambda: measured().psd(0.0, 61.0), ("-20 m to 60 m",)),
-    (lambda: sw.Smooth().psd(0.0, 1e9), ("spacing = 0.05 m", "250.0 to")),
-    (lambda: measured().psd(0.0, 50.0, spacing=2.0), ("spacing = 2.0 m", "1.5625 m")),
-    (lambda: measured().psd(0.0, 50.0, segment=0.1), ("segment = 0.1 m", "0.4 m", "50.0 m")),
+    (lambda: sw.Smooth().psd(0.0, 1e9), ("spacing = 0.05 m", "250 to")),
+    (lambda: measured().psd(0.0, 50.0, spacing=2.0), ("spacing = 2 m", "1.5625 m")),
+    (lambda: measured().psd(0.0, 50.0, segment=0.1), ("segment = 0.1 m", "0.4 m", "50 m")),
     (lambda: sw.Smooth().iso_class(0.0, 100.0), ("smooth", "no class")),
     (lambda: measured().iso_class(0.0, 50.0, band=(1.0, 0.5)), ("band = (1.0, 0.5)", "greater")),
     (

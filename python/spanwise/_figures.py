@@ -23,7 +23,7 @@ def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:
         *((f"vehicle_{k}" if len(numbers) > 1 else "vehicle", plot.vehicle(k)) for k in numbers),
     ]
     if not run.road.is_smooth:
-        figures.append(("road", run.road.plot()))
+        figures.append(("road", plot.road()))
     for name, figure in figures:
         png, svg = BytesIO(), BytesIO()
         figure.savefig(png, format="png", dpi=200)

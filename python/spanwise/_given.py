@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import warnings
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -23,6 +24,18 @@ QUANTITIES: Final = (
     "reaction",
     "clamp-moment",
 )
+
+#: By how much modes may exceed the flexibility that they are part of, relative to it: frequencies
+#: printed to two digits may be off by 10 % in the square, while shapes scaled to unit modal mass in
+#: tonnes, or to a largest ordinate of 1, are off by a factor of 1000 and more.
+_EXCESS: Final = 0.1
+
+#: Flexibility that is nought but for printed digits, relative to the largest: over supports.
+_NOUGHT: Final = 1e-4
+
+#: Part of the flexibility below which modes explain little of it. Frequencies in rad/s explain at
+#: most 1/(2 pi)^2 = 0.025; this is half-way, by factors, from there to all.
+_LITTLE: Final = 0.16
 
 
 def matrix(key: str, value: object) -> Array:
@@ -63,6 +76,60 @@ def influence_lines(influence: object, slopes: object, modal: object) -> list[Li
         )
         for name, values in lines.items()
     ]
+
+
+def check_flexibility(
+    path: Sequence[float],
+    frequencies: Sequence[float],
+    shapes: Array,
+    sections: Sequence[float],
+    deflections: Array,
+) -> None:
+    """Refuse modes and lines of deflection that cannot be of one bridge; doubt those that hardly.
+
+    The flexibility K^-1 is the sum of phi phi^T / omega^2 over all modes of unit modal mass, for
+    any mass matrix, and no term of its diagonal is negative.
+
+    Parameters
+    ----------
+    path, frequencies, sections : sequence of float
+        As `Bridge.from_modes` takes them.
+    shapes : ndarray, shape (path, modes)
+        The mode shapes.
+    deflections : ndarray, shape (sections, path)
+        The influence lines of deflection.
+    """
+    at = [int(np.argmin(np.abs(np.subtract(path, x)))) for x in sections]
+    if not at:
+        return
+    own = deflections[np.arange(len(at)), at]
+    nought = _NOUGHT * float(np.abs(deflections).max(initial=0.0))
+    low = int(np.argmin(own))
+    if own[low] < -nought:
+        raise ValueError(
+            f"influence deflection = {own[low]:.4g} m/N at its own section, x = {sections[low]:g} "
+            "m: must be 0 or more; deflections are positive down: change the sign"
+        )
+    modal = (shapes[at] ** 2 / (2.0 * np.pi * np.asarray(frequencies)) ** 2).sum(axis=1)
+    excess = modal - ((1.0 + _EXCESS) * own + nought)
+    worst = int(np.argmax(excess))
+    if excess[worst] > 0.0:
+        raise ValueError(
+            f"shapes: the modes alone deflect x = {sections[worst]:g} m by {modal[worst]:.4g} m/N, "
+            f"the influence line of deflection by {own[worst]:.4g} m/N, which must be more; the "
+            "shapes are not scaled to unit modal mass [kg^-1/2], or the frequencies are too low"
+        )
+    free = own > nought
+    if len(frequencies) > 1 and free.any():
+        part = float((modal[free] / own[free]).max())
+        if part < _LITTLE:
+            warnings.warn(
+                f"frequencies: the modes explain at most {100.0 * part:.2g} % of the deflection "
+                "under a load at any section; are they in rad/s instead of Hz, the shapes not "
+                "scaled to unit modal mass [kg^-1/2], or the modes too few?",
+                UserWarning,
+                stacklevel=3,
+            )
 
 
 def plain(value: Any) -> Any:

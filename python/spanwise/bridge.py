@@ -24,7 +24,7 @@ from spanwise.layout import (
 )
 
 if TYPE_CHECKING:
-    from spanwise.plotting import BridgePlot
+    from spanwise.plotting import BridgePlot, SettlementPlot
 
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = Literal["pinned", "clamped", "free"]
@@ -62,7 +62,7 @@ class Modes:
         return 2.0 * np.pi * self.frequencies
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Settlement:
     """What settling supports do to a bridge at rest.
 
@@ -82,6 +82,8 @@ class Settlement:
         Reactions, up [N]; they balance each other.
     clamp_moments : ndarray, shape (clamp,)
         Moments of the supports that hold the rotation [N m]; see `Bridge.clamps`.
+    bridge : Bridge
+        The bridge itself.
     """
 
     sections: Array
@@ -91,6 +93,25 @@ class Settlement:
     shear: Array
     reactions: Array
     clamp_moments: Array
+    bridge: Bridge
+
+    def __repr__(self) -> str:
+        def between(values: Array, factor: float, unit: str) -> str:
+            low, high = factor * values.min(initial=0.0), factor * values.max(initial=0.0)
+            return f"{low:.4g} to {high:.4g} {unit}"
+
+        return (
+            f"Settlement({len(self.sections)} sections, {len(self.supports)} supports; deflection "
+            f"{between(self.deflection, 1e3, 'mm')}, moment {between(self.moment, 1e-3, 'kN m')}, "
+            f"reactions {between(self.reactions, 1e-3, 'kN')})"
+        )
+
+    @property
+    def plot(self) -> SettlementPlot:
+        """Its figure, when called; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import SettlementPlot
+
+        return SettlementPlot(self)
 
 
 class Bridge:
@@ -344,7 +365,14 @@ class Bridge:
         Raises
         ------
         ValueError
-            If a value is not allowed, naming it and what is.
+            If a value is not allowed, naming it and what is; if the modes deflect a section more
+            than its influence line of deflection, of which they are a part.
+
+        Warns
+        -----
+        UserWarning
+            If the modes explain very little of the lines of deflection, as with frequencies in
+            rad/s.
         """
         given: dict[str, Any] = {
             "path": numbers("path", path),
@@ -353,12 +381,19 @@ class Bridge:
             "supports": supports_of("supports", supports),
             "masses": None if masses is None else numbers("masses", masses),
         }
+        both = _given.sides("shapes", shapes)
+        lines = _given.influence_lines(influence, influence_slopes, modal)
         core = _core.Bridge.from_modes(
             **given,
-            shapes=_given.sides("shapes", shapes),
+            shapes=both,
             slopes=None if slopes is None else _given.sides("slopes", slopes),
-            influence=_given.influence_lines(influence, influence_slopes, modal),
+            influence=lines,
         )
+        for quantity, (values, _), *_ in lines:
+            if quantity == "deflection":
+                _given.check_flexibility(
+                    given["path"], given["frequencies"], both[0], given["sections"], values
+                )
         arrays = {
             "shapes": shapes,
             "slopes": slopes,
@@ -602,7 +637,7 @@ class Bridge:
         )
         w, moment, left, right, reactions, clamps = self._core.settlement(each, where)
         shear = np.stack([left, right], axis=-1)
-        return Settlement(np.array(where), at, w, moment, shear, reactions, clamps)
+        return Settlement(np.array(where), at, w, moment, shear, reactions, clamps, self)
 
     def flexibility(self, structure: Structure = "actual") -> tuple[Array, Array]:
         """Positions [m] and flexibility matrix [m/N]: deflections there for unit loads there.

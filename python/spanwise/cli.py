@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
@@ -122,17 +123,49 @@ def _parser() -> _Parser:
     )
     road.add_argument("--start", type=float, metavar="X", help="where the section begins [m]")
     road.add_argument("--end", type=float, metavar="X", help="where it ends [m]")
+    road.add_argument(
+        "--columns",
+        nargs=2,
+        metavar=("X", "Z"),
+        help="names, or numbers from 0, of the columns of a CSV file with x and elevation",
+    )
+    road.add_argument("--delimiter", metavar="C", help="what separates the columns; , by default")
+    road.add_argument(
+        "--scale",
+        nargs=2,
+        type=float,
+        metavar=("X", "Z"),
+        help="what x and elevation are multiplied by to give metres: 1 0.001 for mm",
+    )
+    road.add_argument(
+        "--max-gap", type=float, metavar="D", help="largest distance of neighbouring points [m]"
+    )
     road.set_defaults(work=_road)
     return parser
 
 
 def _road(options: argparse.Namespace) -> str:
-    if options.file.suffix.lower() == ".toml":
-        case = Case.read(options.file)
-        road: Road = Smooth() if case.road is None else case.road
-    else:
-        road = Profile.read_csv(options.file)
-    return roughness(road, options.start, options.end) + "\n"
+    columns = options.columns and tuple(int(c) if c.isdecimal() else c for c in options.columns)
+    given = {
+        "columns": columns,
+        "delimiter": options.delimiter,
+        "scale": options.scale,
+        "max_gap": options.max_gap,
+    }
+    given = {key: value for key, value in given.items() if value is not None}
+    with warnings.catch_warnings(record=True) as doubts:
+        warnings.simplefilter("always", UserWarning)
+        if options.file.suffix.lower() == ".toml":
+            for key in given:
+                raise ValueError(f"--{key.replace('_', '-')}: used with CSV files only")
+            case = Case.read(options.file)
+            road: Road = Smooth() if case.road is None else case.road
+        else:
+            road = Profile.read_csv(options.file, **given)
+        text = roughness(road, options.start, options.end) + "\n"
+    for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
+        print(f"spanwise: warning: {message}", file=sys.stderr)
+    return text
 
 
 def _vehicles(options: argparse.Namespace) -> str:

@@ -4,7 +4,7 @@ Every method returns a `matplotlib.figure.Figure` that belongs to no window: sav
 ``figure.savefig("name.svg")``, or leave it as the last line of a notebook cell.
 """
 
-from spanwise.plotting.bridge import BridgePlot
+from spanwise.plotting.bridge import BridgePlot, SettlementPlot
 from spanwise.plotting.comparison import compare_convergence, compare_impact_factors
 from spanwise.plotting.road import RoadPlot
 from spanwise.plotting.run import RunPlot
@@ -14,6 +14,7 @@ __all__ = [
     "BridgePlot",
     "RoadPlot",
     "RunPlot",
+    "SettlementPlot",
     "VehiclePlot",
     "compare_convergence",
     "compare_impact_factors",

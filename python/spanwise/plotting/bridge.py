@@ -13,6 +13,7 @@ from spanwise.plotting import symbols
 from spanwise.plotting.style import (
     GREY,
     LINES,
+    MEASURES,
     PALE,
     Measure,
     along,
@@ -30,10 +31,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-    from spanwise.bridge import Bridge, Quantity, Structure
+    from spanwise.bridge import Bridge, Quantity, Settlement, Structure
 
 #: Margin beside the beam in a drawing of the model, as a fraction of its length.
 MARGIN: Final = 0.04
+
+#: Masses of a span, on average, above which they are drawn small.
+CROWD: Final = 8
 
 INFLUENCES: Final[dict[str, Measure]] = {
     "deflection": Measure("Deflection, down,\nfor 1 kN [mm]", 1e6, downward=True),
@@ -140,7 +144,7 @@ class BridgePlot:
                 scale * modes.shapes[:, k],
                 "o",
                 color="black",
-                markersize=3.5,
+                markersize=2.0 if _crowded(bridge) else 3.5,
                 clip_on=False,
             )
             along(ax, bridge, letters=k == 0, label=k == count - 1)
@@ -197,6 +201,43 @@ class BridgePlot:
         return whole(ax)
 
 
+class SettlementPlot:
+    """Figure of a settlement, reached as ``settlement.plot``: call it."""
+
+    def __init__(self, settlement: Settlement) -> None:
+        self._settlement = settlement
+
+    @styled
+    def __call__(self, *, figure: Figure | SubFigure | None = None) -> Figure:
+        """Deflection, and below it the bending moment, both drawn downward.
+
+        Parameters
+        ----------
+        figure : matplotlib.figure.Figure or SubFigure, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        found = self._settlement
+        figure = figure_for(figure, 4.4)
+        above, below = figure.subplots(2, 1, sharex=True)
+        for ax, name, values in (
+            (above, "deflection", found.deflection),
+            (below, "moment", found.moment),
+        ):
+            zero_line(ax)
+            order = np.argsort(found.sections, kind="stable")
+            x, y = found.sections[order], MEASURES[name].factor * values[order]
+            ax.fill_between(x, y, color=PALE, linewidth=0.0)
+            ax.plot(x, y, **LINES[0])
+            along(ax, found.bridge, letters=ax is above, label=ax is below)
+            measure_on(ax, MEASURES[name])
+        figure.align_ylabels([above, below])
+        return whole(figure)
+
+
 def draw_bridge(
     ax: Axes,
     bridge: Bridge,
@@ -238,11 +279,20 @@ def draw_bridge(
         ax.scatter(
             bridge.stations,
             np.zeros_like(bridge.stations),
-            s=np.clip(50.0 * bridge.masses / bridge.masses.max(), 4.0, None),
-            color="black",
+            s=np.clip(
+                (14.0 if _crowded(bridge) else 50.0) * bridge.masses / bridge.masses.max(),
+                4.0,
+                None,
+            ),
+            color=GREY if _crowded(bridge) else "black",
             clip_on=False,
             zorder=5.0,
         )
+
+
+def _crowded(bridge: Bridge) -> bool:
+    """Whether there are too many masses to draw them large."""
+    return len(bridge.masses) > CROWD * (len(bridge.span_bounds) - 1)
 
 
 def _dimensions(ax: Axes, bridge: Bridge) -> None:

@@ -58,7 +58,7 @@ def compare_impact_factors(
         values = getattr(run.impact_factors, factor)
         plot_masked(ax, run.impact_factors.sections, values, label=name, **LINES[i % len(LINES)])
     first = next(iter(runs.values()))
-    along(ax, first.bridge)
+    along(ax, first.bridge, hinges=False)
     ax.set_xlabel(f"{ax.get_xlabel()}\n{mask_note(first.impact_factors.mask)}")
     ax.set_ylabel(f"Impact factor,\n{FACTORS[factor].lower()} [-]")
     legend_above(ax, columns=3 if len(runs) != 4 else 2)

@@ -47,8 +47,11 @@ def draw_curves(ax: Axes, run: Run, quantity: Quantity, measure: Measure) -> Non
         (envelope.static_min, STATIC, None),
     ):
         x, y = envelope.x, measure.factor * extremes.value
-        if quantity == "shear":
-            x, y = cut_at_supports(x, y, run.supports)
+        if quantity == "shear" and np.isfinite(y).any():
+            of = run if line is DYNAMIC else run.static
+            largest = extremes in (envelope.max, envelope.static_max)
+            sides = measure.factor * (of.shear.max(axis=0) if largest else of.shear.min(axis=0))
+            x, y = branches(x, y, sides, run.supports)
         ax.plot(x, y, label=label, **line)
     along(ax, run.bridge)
     legend_above(ax)
@@ -67,14 +70,20 @@ def draw_bars(ax: Axes, run: Run, quantity: Quantity, measure: Measure) -> None:
     legend_above(ax, clear=0.5)
 
 
-def cut_at_supports(x: Array, y: Array, supports: Array) -> tuple[Array, Array]:
-    """The curve with a cut beside every support between, which it joins on the side it fits."""
+def branches(x: Array, y: Array, sides: Array, supports: Array) -> tuple[Array, Array]:
+    """The curve with a cut at every support between, up to which it goes on either side.
+
+    `sides`, of shape (x, 2), are the values just left and just right.
+    """
     for support in supports:
         (found,) = np.nonzero(np.isclose(x, support, rtol=0.0, atol=1e-9))
         if len(found) == 0 or not 0 < (i := int(found[0])) < len(x) - 1:
             continue
-        left = abs(y[i] - y[i - 1]) < abs(y[i] - y[i + 1])
-        x, y = np.insert(x, i + left, support), np.insert(y, i + left, np.nan)
+        left, right = sides[i]
+        x, y = np.insert(x, i, [support, support]), np.insert(y, i, [left, np.nan])
+        y[i + 2] = right
+        sides = np.insert(sides, i, np.nan, axis=0)
+        sides = np.insert(sides, i, np.nan, axis=0)
     return x, y
 
 

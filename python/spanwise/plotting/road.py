@@ -148,7 +148,8 @@ class RoadPlot:
         except ValueError:
             return whole(ax)
         line = {**STATIC, "linewidth": 1.0}
-        name = f"fitted: G$_d$(n$_0$) = {1e6 * found.G:.3g}·10$^{{-6}}$ m$^3$, class {found.letter}"
+        G = float(f"{1e6 * found.G:.3g}")
+        name = f"fitted: G$_d$(n$_0$) = {G:g}·10$^{{-6}}$ m$^3$, class {found.letter}"
         ax.plot(ends, found.G * (ends / REFERENCE) ** -2, label=name, **line)
         legend_above(ax, clear=0.2)
         return whole(ax)

@@ -16,7 +16,9 @@ from spanwise.plotting.history import Side, column, front_axle_on_top, histories
 from spanwise.plotting.style import (
     DYNAMIC,
     GREY,
+    HEIGHT,
     LINES,
+    PALE,
     STATIC,
     along,
     axes_for,
@@ -156,8 +158,13 @@ class RunPlot:
         panels = figure.subplots(2, 2, sharex=True)
         for ax, (factor, name) in zip(panels.flat, FACTORS.items(), strict=True):
             zero_line(ax, at=1.0)
-            plot_masked(ax, factors.sections, getattr(factors, factor), **LINES[0])
-            along(ax, run.bridge, label=False)
+            values = getattr(factors, factor)
+            plot_masked(ax, factors.sections, values, **LINES[0])
+            along(ax, run.bridge, label=False, hinges=False)
+            if not np.isfinite(values).any():
+                ax.set_yticks([1.0])
+                note = {"ha": "center", "va": "bottom", "fontsize": 8.0, "color": GREY}
+                ax.text(0.5, 0.6, "blank everywhere", transform=ax.transAxes, **note)
             ax.set_title(name, fontsize=9.0, pad=13.0)
         figure.supylabel("Impact factor [-]", fontsize=9.0)
         figure.supxlabel(
@@ -213,6 +220,8 @@ class RunPlot:
     def vehicle(self, number: int = 1, *, figure: Figure | SubFigure | None = None) -> Figure:
         """Motion, axle loads, road and speed of a vehicle against time; bands where wheels lift.
 
+        A speed that does not change has no panel.
+
         Parameters
         ----------
         number : int, optional
@@ -234,7 +243,10 @@ class RunPlot:
         heaves = [1e3 * body.heave.displacement for body in motion.bodies]
         pitches = [1e3 * body.pitch.displacement for body in motion.bodies] * (len(axles) > 1)
         uneven = bool(motion.elevations.any())
-        rows = bool(heaves) + bool(pitches) + (1 if together else len(axles)) + uneven + 1
+        steady = float(np.ptp(motion.speed)) <= 1e-9 * float(motion.speed.max())
+        rows = (
+            bool(heaves) + bool(pitches) + (1 if together else len(axles)) + uneven + (not steady)
+        )
         figure = figure_for(figure, 1.0 + 1.05 * rows)
         panels = list(np.atleast_1d(figure.subplots(rows, 1, sharex=True)))
         rest = iter(panels)
@@ -259,13 +271,44 @@ class RunPlot:
             ax = next(rest)
             _single(ax, run.time, 1e3 * motion.elevations[:, 0], "Road under\naxle 1 [mm]")
             zero_line(ax)
-        speed = next(rest)
-        _single(speed, run.time, motion.speed, "Speed\n[m/s]")
-        _not_narrower(speed, 1e-3 * float(motion.speed.max()))
-        lifted = any(each.axle - 1 in axles for each in run.lift_offs)
-        speed.set_xlabel("Time [s]" + ("; bands: the wheel is off the road" if lifted else ""))
+        notes = ["Time [s]"]
+        if steady:
+            notes.append(f"at {motion.speed[0]:g} m/s throughout")
+        else:
+            ax = next(rest)
+            _single(ax, run.time, motion.speed, "Speed\n[m/s]")
+            _not_narrower(ax, 1e-3 * float(motion.speed.max()))
+        if any(each.axle - 1 in axles for each in run.lift_offs):
+            notes.append("bands: the wheel is off the road")
+        panels[-1].set_xlabel("; ".join(notes))
         front_axle_on_top(panels[0], run, chosen)
         figure.align_ylabels(panels)
+        return whole(figure)
+
+    @styled
+    def road(self, *, figure: Figure | SubFigure | None = None) -> Figure:
+        """The road where wheels pass, with the bridge as a band, and the spectrum of all of it.
+
+        Parameters
+        ----------
+        figure : matplotlib.figure.Figure or SubFigure, optional
+            Where to draw; by default a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        run = self._run
+        paths = [motion.axle_positions for motion in run.vehicles]
+        first, last = run.road.ends
+        start = max(first, min(0.0, *(float(each.min()) for each in paths)))
+        end = min(last, max(run.bridge.length, *(float(each.max()) for each in paths)))
+        figure = figure_for(figure, 2.0 * HEIGHT + 0.8)
+        above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.7))
+        run.road.plot.profile(start, end, ax=above)
+        above.axvspan(0.0, run.bridge.length, color=PALE, alpha=0.5, linewidth=0.0, zorder=0.4)
+        above.set_xlabel(f"{above.get_xlabel()}; the bridge is grey")
+        run.road.plot.psd(ax=below)
         return whole(figure)
 
 

@@ -148,13 +148,18 @@ def measure_on(ax: Axes, measure: Measure) -> None:
         ax.yaxis.set_inverted(True)
 
 
-def along(ax: Axes, bridge: Bridge, *, letters: bool = True, label: bool = True) -> None:
-    """Let the horizontal axis run along the bridge: hairlines at the supports, lettered on top."""
+def along(
+    ax: Axes, bridge: Bridge, *, letters: bool = True, label: bool = True, hinges: bool = True
+) -> None:
+    """Let the horizontal axis run along the bridge: hairlines at the supports, lettered on top.
+
+    Hinges are open circles at nought.
+    """
     ax.set_xlim(0.0, bridge.length)
     if label:
         ax.set_xlabel("Distance from the left end, x [m]")
     for letter, (x, _) in zip(support_letters(bridge), bridge.supports, strict=True):
-        ax.axvline(x, color=GREY, linewidth=0.5, zorder=0.5)
+        ax.axvline(x, color=GREY, linewidth=0.5, zorder=0.5, clip_on=False)
         if letters:
             ax.annotate(
                 letter,
@@ -167,6 +172,18 @@ def along(ax: Axes, bridge: Bridge, *, letters: bool = True, label: bool = True)
                 color=GREY,
                 annotation_clip=False,
             )
+    if hinges and len(bridge.hinges):
+        ax.plot(
+            bridge.hinges,
+            [0.0] * len(bridge.hinges),
+            linestyle="none",
+            marker="o",
+            markersize=6.5,
+            markerfacecolor="white",
+            markeredgecolor="black",
+            zorder=6.0,
+            clip_on=False,
+        )
 
 
 def zero_line(ax: Axes, at: float = 0.0) -> None:

@@ -160,8 +160,8 @@ def spiral(ax: Axes, x: float) -> None:
 def open_hinge(ax: Axes, x: float) -> None:
     """An open circle in the beam."""
     turn = np.linspace(0.0, 2.0 * np.pi, 37)
-    ring = np.column_stack([2.6 * np.cos(turn), 2.6 * np.sin(turn)])
-    stroke(ax, local(ax, x), ring, width=1.0, fill="white", order=5.5)
+    ring = np.column_stack([3.8 * np.cos(turn), 3.8 * np.sin(turn)])
+    stroke(ax, local(ax, x), ring, width=1.2, fill="white", order=5.5)
 
 
 def spring(ax: Axes, x: float, shift: float, low: float, high: float, half_width: float) -> None:

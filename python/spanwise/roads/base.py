@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias
 
 import numpy as np
@@ -27,7 +28,8 @@ class Road:
     """A road surface: elevation, slope and curvature at any x.
 
     x [m] runs from the left end of the bridge and is negative on the left approach; elevation [m]
-    is positive up. Roads cannot be changed; they add up with ``+``.
+    is positive up. Roads cannot be changed; they add up with ``+`` and ``sum``, and
+    ``2 * road`` is twice as rough.
 
     Each is averaged over the length of road that a tyre touches, its `contact_patch`, before
     anything looks at it. `iri`, `psd` and `iso_class` describe the surface itself, without that.
@@ -39,6 +41,9 @@ class Road:
     """
 
     kind: ClassVar[str]
+
+    #: Names of the values that are in proportion to the elevation.
+    _heights: ClassVar[tuple[str, ...]] = ()
 
     if TYPE_CHECKING:
 
@@ -66,6 +71,25 @@ class Road:
         if not isinstance(other, Road):
             return NotImplemented
         return total([self, other])
+
+    def __radd__(self, other: object) -> Road:
+        """The road itself on 0, with which ``sum`` begins."""
+        return total([self]) if other == 0 else NotImplemented
+
+    def __mul__(self, factor: object) -> Road:
+        """The road with elevations so many times as high; the factor is not negative."""
+        if isinstance(factor, bool | Road) or not isinstance(factor, Real):
+            return NotImplemented
+        times = number("factor", factor)
+        if not 0.0 <= times < np.inf:
+            raise ValueError(f"factor = {times:g}: must be finite and 0 or more")
+        return self._times(times) if times > 0.0 else Smooth()
+
+    __rmul__ = __mul__
+
+    def _times(self, factor: float) -> Road:
+        changes: dict[str, Any] = {key: factor * getattr(self, key) for key in self._heights}
+        return replace(self, **changes)
 
     @property
     def arguments(self) -> dict[str, Any] | list[dict[str, Any]]:
@@ -190,7 +214,8 @@ class Road:
         wave_numbers : ndarray
             Wave numbers n [cycle/m], without 0, shape (waves,).
         density : ndarray
-            One-sided density G_d(n) [m3], whose integral over n is the variance, shape (waves,).
+            One-sided density G_d(n) [m3], shape (waves,), scaled so that its integral over n, its
+            sum times the first n, is the variance of all waves that are short of a segment.
 
         Raises
         ------
@@ -199,8 +224,10 @@ class Road:
 
         Notes
         -----
-        Welch's method: segments that overlap by half, less their mean, under Hann windows. Its
-        resolution is about two wave numbers, so that the first of them are rough.
+        Welch's method: segments that overlap by half, less their mean, under Hann windows, divided
+        by the mean square of the window, which so does not change the variance. Its resolution is
+        about two wave numbers, so that the first of them are rough; of waves as long as a segment
+        and longer, most of the variance is not in the density.
         """
         return roughness.psd(self.surface.elevation, start, end, segment, spacing)
 
@@ -283,6 +310,9 @@ class Sum(Road):
             found = part.arguments
             tables += found if isinstance(found, list) else [found]
         return tables
+
+    def _times(self, factor: float) -> Road:
+        return total(part * factor for part in self.parts)
 
     @property
     def surface(self) -> Road:

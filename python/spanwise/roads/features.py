@@ -45,6 +45,7 @@ class Step(_Feature):
     """
 
     kind: ClassVar[str] = "step"
+    _heights: ClassVar[tuple[str, ...]] = ("height",)
 
     at: float
     height: float
@@ -70,6 +71,7 @@ class Ramp(_Feature):
     """
 
     kind: ClassVar[str] = "ramp"
+    _heights: ClassVar[tuple[str, ...]] = ("height",)
 
     start: float
     end: float
@@ -100,6 +102,7 @@ class Bump(_Feature):
     """
 
     kind: ClassVar[str] = "bump"
+    _heights: ClassVar[tuple[str, ...]] = ("height",)
 
     at: float
     length: float
@@ -132,6 +135,7 @@ class Pothole(_Feature):
     """
 
     kind: ClassVar[str] = "pothole"
+    _heights: ClassVar[tuple[str, ...]] = ("depth",)
 
     at: float
     length: float
@@ -166,6 +170,7 @@ class Joint(_Feature):
     """
 
     kind: ClassVar[str] = "joint"
+    _heights: ClassVar[tuple[str, ...]] = ("depth",)
 
     at: float
     gap: float
@@ -198,6 +203,7 @@ class Camber(_Feature):
     """
 
     kind: ClassVar[str] = "camber"
+    _heights: ClassVar[tuple[str, ...]] = ("rise",)
 
     start: float
     end: float

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+import re
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +19,10 @@ from spanwise._keys import suggestion
 from spanwise.roads.base import CONTACT_PATCH, Road
 
 Array: TypeAlias = NDArray[np.float64]
+
+#: Median slope of a profile above which it is hardly in metres [-]: that of class H, the roughest,
+#: sampled finely, is about 0.3, while a very smooth road with elevations in millimetres has more.
+_STEEP: Final = 0.5
 
 #: Number or name of a column.
 Column: TypeAlias = int | str
@@ -44,6 +50,11 @@ class Profile(Road):
     ValueError
         If points are out of order, double, too far apart, too few or not finite, naming the first.
 
+    Warns
+    -----
+    UserWarning
+        If it is so steep that elevations or positions are hardly in metres.
+
     Notes
     -----
     Of the curves through the points the spline is the smoothest, with continuous curvature, and it
@@ -54,6 +65,7 @@ class Profile(Road):
     """
 
     kind: ClassVar[str] = "profile"
+    _heights: ClassVar[tuple[str, ...]] = ("elevations",)
 
     x: Array
     elevations: Array
@@ -78,6 +90,14 @@ class Profile(Road):
             max_gap=None if max_gap is None else number("max_gap", max_gap),
         )
         self.__post_init__()
+        slope = float(np.median(np.abs(np.diff(self.elevations) / np.diff(self.x))))
+        if slope > _STEEP:
+            warnings.warn(
+                f"elevations: their median slope is {slope:.3g}; are they in mm? Multiply them by "
+                "1e-3, as scale = (1.0, 1e-3) does in a file",
+                UserWarning,
+                stacklevel=2,
+            )
 
     def _made(self) -> _core.Road:
         return _core.Road.profile(
@@ -96,6 +116,8 @@ class Profile(Road):
         columns: tuple[Column, Column] = (0, 1),
         delimiter: str = ",",
         scale: tuple[float, float] = (1.0, 1.0),
+        sort: bool = False,
+        duplicates: Literal["refuse", "mean"] = "refuse",
         detrend: bool = False,
         contact_patch: float = CONTACT_PATCH,
         max_gap: float | None = None,
@@ -114,6 +136,11 @@ class Profile(Road):
         scale : tuple of float, optional
             What x and elevation are multiplied by to give metres, such as ``(1.0, 1e-3)`` for
             elevations in millimetres.
+        sort : bool, optional
+            Whether to bring the points into the order of x.
+        duplicates : {"refuse", "mean"}, optional
+            What becomes of neighbouring points with the same x: the mean of their elevations, or
+            an error.
         detrend, contact_patch, max_gap
             As for `Profile`.
 
@@ -123,13 +150,32 @@ class Profile(Road):
             If the file cannot be read.
         ValueError
             If it holds no profile, naming the line, or a value is not allowed.
+
+        Warns
+        -----
+        UserWarning
+            As for `Profile`.
         """
         factors = numbers("scale", scale)
         if len(factors) != 2:
             raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
-        values = np.array(list(_rows(Path(path), columns, delimiter)), dtype=float).reshape(-1, 2)
-        x, elevations = values.T * np.array(factors)[:, None]
-        return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
+        if word("duplicates", duplicates) not in ("refuse", "mean"):
+            raise ValueError(f"duplicates = {shown(duplicates)}: must be refuse or mean")
+        rows = list(_rows(Path(path), columns, delimiter))
+        x, elevations, lines = np.array(rows, dtype=float).reshape(-1, 3).T
+        x, elevations = factors[0] * x, factors[1] * elevations
+        if flag("sort", sort):
+            order = np.argsort(x, kind="stable")
+            x, elevations, lines = x[order], elevations[order], lines[order]
+        if duplicates == "mean" and len(x):
+            first = np.append(True, np.diff(x) != 0.0)
+            group = np.cumsum(first) - 1
+            elevations = np.bincount(group, elevations) / np.bincount(group)
+            x, lines = x[first], lines[first]
+        try:
+            return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
+        except ValueError as error:
+            raise ValueError(_in_file(str(error), Path(path), x, lines)) from None
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Profile):
@@ -142,7 +188,7 @@ class Profile(Road):
     def __repr__(self) -> str:
         first, last = self.ends
         return (
-            f"Profile({len(self.x)} points from {first} m to {last} m, detrend={self.detrend}, "
+            f"Profile({len(self.x)} points from {first:g} m to {last:g} m, detrend={self.detrend}, "
             f"contact_patch={self.contact_patch}, max_gap={self.max_gap})"
         )
 
@@ -163,8 +209,24 @@ def _column(key: str, value: ArrayLike) -> Array:
     return values
 
 
-def _rows(path: Path, columns: object, delimiter: object) -> Iterator[tuple[float, float]]:
-    """x and elevation of each line."""
+def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
+    """What is wrong with a profile, with the line of the file and what may mend it."""
+    found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
+    if found is None:
+        return message
+    if found[2] is None:
+        return f"{path}: {message}"
+    point = int(found[2])
+    where = f"{path}, line {lines[point]:.0f}: {message}"
+    if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
+        return f'{where}; duplicates = "mean" takes the mean of both'
+    if found[1] == "x" and point > 0 and x[point] < x[point - 1]:
+        return f"{where}; sort = true sorts the points"
+    return where
+
+
+def _rows(path: Path, columns: object, delimiter: object) -> Iterator[tuple[float, float, int]]:
+    """x and elevation of each line, and its number."""
     wanted = pairs("columns", [columns])[0]
     text = word("delimiter", delimiter)
     if len(text) != 1:
@@ -183,7 +245,8 @@ def _rows(path: Path, columns: object, delimiter: object) -> Iterator[tuple[floa
                     places = _places(wanted, cells if names else None, where)
                     if names:
                         continue
-                yield _number(cells, places[0], where), _number(cells, places[1], where)
+                x, elevation = (_number(cells, place, where) for place in places)
+                yield x, elevation, reader.line_num
         except (csv.Error, UnicodeDecodeError) as error:
             raise ValueError(f"{path}: not a file of separated values: {error}") from None
 
@@ -209,10 +272,22 @@ def _places(wanted: tuple[object, object], names: list[str] | None, where: str) 
 
 def _number(cells: list[str], column: int, where: str) -> float:
     if column >= len(cells):
-        raise ValueError(f"{where}: {len(cells)} columns, column {column} (from 0) is missing")
-    if not _is_number(cells[column]):
-        raise ValueError(f"{where}: {shown(cells[column])} in column {column} is not a number")
-    return float(cells[column])
+        other = next((each for each in (";", "\t", "|", " ") if each in cells[0]), None)
+        hint = "" if other is None else f"; is the delimiter {other!r}?"
+        raise ValueError(
+            f"{where}: {len(cells)} columns, column {column} (from 0) is missing{hint}"
+        )
+    text = cells[column]
+    if not _is_number(text):
+        hint = ""
+        if _is_number(text.replace(",", ".")):
+            hint = "; decimals need a point, not a comma"
+        elif ";" in text or "\t" in text:
+            hint = (
+                f"; is the delimiter {';' if ';' in text else chr(9)!r}, and the decimal a point?"
+            )
+        raise ValueError(f"{where}: {shown(text)} in column {column} is not a number{hint}")
+    return float(text)
 
 
 def _is_number(text: str) -> bool:

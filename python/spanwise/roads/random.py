@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any, ClassVar, Final
 
 from spanwise import _core
@@ -119,6 +119,9 @@ class ISO8608(Road):
         if given is not None and given != CLASSES[letter]:
             raise ValueError(f"G = {shown(given)}: not used with class = {shown(letter)}")
         return CLASSES[letter]
+
+    def _times(self, factor: float) -> Road:
+        return replace(self, road_class=None, G=factor**2 * self.G)
 
     @property
     def arguments(self) -> dict[str, Any]:

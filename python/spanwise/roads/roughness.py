@@ -84,14 +84,14 @@ def psd(
     start, end, spacing = number("start", start), number("end", end), number("spacing", spacing)
     length = end - start
     if not 0.0 < length < np.inf:
-        raise ValueError(f"end = {end} m: must be finite and greater than start, {start} m")
+        raise ValueError(f"end = {end:g} m: must be finite and greater than start, {start:g} m")
     if not length / _MOST <= spacing <= length / 32:
-        allowed = f"{length / _MOST} to {length / 32} m for this section"
-        raise ValueError(f"spacing = {spacing} m: must be {allowed}")
+        allowed = f"{length / _MOST:g} to {length / 32:g} m for this section"
+        raise ValueError(f"spacing = {spacing:g} m: must be {allowed}")
     segment = length / 4 if segment is None else number("segment", segment)
     if not 8 * spacing <= segment <= length:
-        allowed = f"must be {8 * spacing} m, eight samples, to {length} m, the section"
-        raise ValueError(f"segment = {segment} m: {allowed}")
+        allowed = f"must be {8 * spacing:g} m, eight samples, to {length:g} m, the section"
+        raise ValueError(f"segment = {segment:g} m: {allowed}")
     points = int(segment / spacing * (1 + 1e-12))
     r = elevation(start + spacing * np.arange(int(length / spacing * (1 + 1e-12))))
     # Hann window, periodic: its mean square scales the periodogram to a density.
