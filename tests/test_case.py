@@ -140,7 +140,7 @@ def test_every_argument_is_a_key() -> None:
 
 TRAFFIC = """
 [[traffic]]
-vehicle = { preset = "half-car" }
+vehicle = { preset = "half-car", cg_height = 1.2 }
 speed = 15.0
 drive = { kind = "acceleration", acceleration = 0.5 }
 
@@ -166,7 +166,7 @@ def test_traffic_on_a_road() -> None:
     case = sw.Case.parse(BRIDGE + TRAFFIC + ROAD + CROSSING)
     drive = sw.Acceleration(acceleration=0.5)
     expected = (
-        sw.Passage(vehicle=sw.vehicles.half_car(), speed=15.0, drive=drive),
+        sw.Passage(vehicle=sw.vehicles.half_car(cg_height=1.2), speed=15.0, drive=drive),
         sw.Passage(
             vehicle=sw.ForceTrain(loads=[60e3, 90e3], spacings=[4.0]),
             direction="left",
@@ -363,7 +363,8 @@ REFUSED = [
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'articulated-5-axle'\nmass = 2" + CROSSING,
-        r"'mass' \(not beside this preset\); allowed: preset, initial_friction",
+        r"'mass' \(not beside this preset\); allowed: preset, cg_heights, hinge_height, "
+        "initial_friction",
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'hs20'\nrear_spacing = 10.0" + CROSSING,
@@ -458,7 +459,9 @@ REFUSED = [
         r"traffic\[0\]: vehicle: preset = 'half-cart': .*did you mean 'half-car'",
     ),
     (
-        BRIDGE + TRAFFIC.replace('{ preset = "half-car" }', '"half-car"') + CROSSING,
+        BRIDGE
+        + TRAFFIC.replace('{ preset = "half-car", cg_height = 1.2 }', '"half-car"')
+        + CROSSING,
         r"traffic\[0\]: vehicle = 'half-car': must be a table",
     ),
     (

@@ -143,6 +143,37 @@ def test_braking_stops_where_energy_says() -> None:
     assert "braking by 3 m/s2 from 2 m after its end of the bridge, friction 0.7" in summary(run)
 
 
+LEVEL = "centres of mass at road level: no load transfer from braking or accelerating"
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        sw.Braking(deceleration=3.0),
+        sw.Acceleration(acceleration=1.0),
+        sw.Speeds(times=[0.0, 1.0], speeds=[12.0, 14.0]),
+    ],
+    ids=lambda drive: drive.kind,
+)
+def test_a_vehicle_without_heights_shifts_no_load(drive: Any) -> None:
+    speed = None if isinstance(drive, sw.Speeds) else 12.0
+    level, high = (sw.vehicles.half_car(cg_height=height) for height in (0.0, 1.5))
+    with pytest.warns(UserWarning, match=f"^{LEVEL}$"):
+        run = sw.cross(BRIDGE, level, speed=speed, modes=2, drive=drive)
+    assert LEVEL in summary(run)
+    both = [
+        sw.Passage(vehicle=TRUCK, speed=12.0),
+        sw.Passage(vehicle=level, drive=drive, speed=speed, direction="left"),
+    ]
+    with pytest.warns(UserWarning, match=re.escape(f"vehicles[1]: {LEVEL}")):
+        sw.cross(BRIDGE, both, modes=2)
+    # Neither where there is a height, nor where nothing is accelerated or there is one axle.
+    assert LEVEL not in summary(sw.cross(BRIDGE, high, speed=speed, modes=2, drive=drive))
+    assert LEVEL not in summary(sw.cross(BRIDGE, level, speed=12.0, modes=2))
+    alone = sw.vehicles.quarter_car()
+    assert LEVEL not in summary(sw.cross(BRIDGE, alone, speed=speed, modes=2, drive=drive))
+
+
 def test_friction_bounds_the_brakes() -> None:
     hard = sw.Braking(deceleration=9.0, friction=0.3)
     run = cross(drive=hard, speed=12.0)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
 from spanwise import _core
 from spanwise._checks import count, flag, number, numbers, shown, word
+from spanwise._remarks import remarks
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, resolved
@@ -113,6 +115,11 @@ def cross(
     RuntimeError
         If the numerics fail, or under constant traction a vehicle comes to rest.
 
+    Warns
+    -----
+    UserWarning
+        If a vehicle brakes or accelerates and has all its centres of mass at road level.
+
     Notes
     -----
     An axle that drives on to a *free* end of the bridge loads it suddenly with all it carries, and
@@ -190,7 +197,12 @@ def cross(
         settings["damping"] = ratios[0]
     if speed is None:
         del settings["speed"]
-    return Run(bridge, passages, surface, settings, core)
+    run = Run(bridge, passages, surface, settings, core)
+    for k in range(len(passages)):
+        for remark in remarks(run, k):
+            whose = "" if len(passages) == 1 else f"vehicles[{k}]: "
+            warnings.warn(f"{whose}{remark}", UserWarning, stacklevel=2)
+    return run
 
 
 def _passages(vehicle: object) -> tuple[Passage, ...]:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._remarks import remarks
 from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
@@ -103,6 +104,8 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
         lane = int(passage.direction == "left") if passage.lane is None else passage.lane
         way[:0] = [f"to the {passage.direction} in lane {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
+    for remark in remarks(run, number):
+        yield f"          {remark}"
     if passage.road is not None:
         yield f"          on a road of its own: {_road(passage.road)}"
 

@@ -78,7 +78,7 @@ class Hinge:
     own : float
         Distance of the hinge ahead of the centre of mass of the body that has it [m].
     height : float, optional
-        Height above the road [m]; matters where vehicles roll freely only.
+        Height above the road [m]; matters wherever the vehicle is accelerated or rolls freely.
     """
 
     to: int
@@ -133,7 +133,8 @@ class Body:
     axles : sequence of Axle, optional
         Its axles, front first.
     cg_height : float, optional
-        Height of the centre of mass above the road [m]; matters where vehicles roll freely only.
+        Height of the centre of mass above the road [m]; matters wherever the vehicle is accelerated
+        (braking, acceleration, speeds in time) or rolls freely.
     hinge : Hinge, optional
         A hinge to an earlier body.
     springs : sequence of Spring, optional
@@ -176,7 +177,8 @@ class Vehicle(Wheels):
         Its axles, front first. A single axle stands below the centre of mass. Of a vehicle of
         several bodies the axles of all, front first, each with its position in its own body.
     cg_height : float, optional
-        Height of the centre of mass above the road [m]; matters under constant traction only.
+        Height of the centre of mass above the road [m]; matters wherever the vehicle is accelerated
+        (braking, acceleration, speeds in time) or rolls freely (constant traction).
     bodies : sequence of Body, optional
         The bodies, each but the first hinged or sprung to earlier ones. Empty where there is one.
 
