@@ -124,7 +124,11 @@ def test_the_settings_compute_the_run_again(run: sw.Run, report: dict[str, Any])
         (sw.vehicles.kishan_1973(), {"drive": sw.Braking(deceleration=4.0), "tail": 0.5}),
         (
             sw.MovingMasses(masses=[1e4, 2e4], spacings=[3.0]),
-            {"drive": sw.Speeds(times=[0.0, 1.0], speeds=[20.0, 10.0]), "lift_off": False},
+            {
+                "drive": sw.Speeds(times=[0.0, 1.0], speeds=[20.0, 10.0]),
+                "speed": None,
+                "lift_off": False,
+            },
         ),
         (
             sw.vehicles.quarter_car(),

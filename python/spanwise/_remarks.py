@@ -16,12 +16,24 @@ def remarks(run: Run, vehicle: int) -> list[str]:
     passage = run.passages[vehicle]
     drive = drive_of(run.settings["drive"]) if passage.drive is None else passage.drive
     found = []
-    if is_level(passage, drive):
+    if _is_level(passage, drive):
         found.append("centres of mass at road level: no load transfer from braking or accelerating")
+    if isinstance(drive, Braking) and not _comes_to(run, vehicle, drive.start):
+        found.append(f"the brakes never come on: it does not come to {drive.start:g} m")
+    if run.vehicles[vehicle].stopped is not None and not _comes_to(run, vehicle, 0.0):
+        found.append("stops before it reaches the bridge")
     return found
 
 
-def is_level(passage: Passage, drive: Drive) -> bool:
+def _comes_to(run: Run, vehicle: int, way: float) -> bool:
+    """Whether the front axle does, from the end of the bridge at which the vehicle enters [m]."""
+    x = run.vehicles[vehicle].axle_positions[:, 0]
+    if run.passages[vehicle].direction == "right":
+        return bool(x.max() >= way)
+    return bool(run.bridge.length - x.min() >= way)
+
+
+def _is_level(passage: Passage, drive: Drive) -> bool:
     """Whether a vehicle that could dip or squat has all its heights at the road."""
     changes = (
         isinstance(drive, Braking)

@@ -61,7 +61,8 @@ def cross(
     vehicle : Vehicle, ForceTrain, MovingMasses, Passage or sequence of Passage
         The vehicle, or several, each with its own way of crossing.
     speed : float, optional
-        Speed at the start [m/s]; needed unless every passage, or the drive, has its own.
+        Speed at the start [m/s]; needed unless every passage, or the drive, has its own, and not
+        allowed beside `Speeds` where nothing uses it.
     modes : int, optional
         Number of natural modes included. By default two for each span, at least three, at most as
         many as there are masses.
@@ -118,7 +119,8 @@ def cross(
     Warns
     -----
     UserWarning
-        If a vehicle brakes or accelerates and has all its centres of mass at road level.
+        If a vehicle brakes or accelerates and has all its centres of mass at road level, if its
+        brakes never come on, or if it stops before it reaches the bridge.
 
     Notes
     -----
@@ -141,10 +143,8 @@ def cross(
         raise TypeError(f"road = {road!r}: must be a Road")
     surface = Smooth() if road is None else road
     driven = drive_of(drive)
-    if speed is not None:
-        speed = number("speed", speed)
-    elif any(each.speed is None and not _timed(each.drive or driven) for each in passages):
-        raise ValueError("speed: missing; give it here or with every passage")
+    speed = None if speed is None else number("speed", speed)
+    _check_speed(passages, speed, driven)
     uneven = not all((each.road or surface).is_smooth for each in passages)
     if approach is None:
         approach = APPROACH if uneven else 0.0
@@ -221,8 +221,21 @@ def _passages(vehicle: object) -> tuple[Passage, ...]:
     )
 
 
-def _timed(drive: Drive) -> bool:
-    return isinstance(drive, Speeds)
+def _check_speed(passages: tuple[Passage, ...], speed: float | None, drive: Drive) -> None:
+    """Refuses a speed that is missing, and one beside speeds in time that nothing uses."""
+    timed = [isinstance(each.drive or drive, Speeds) for each in passages]
+    for k, (each, has_times) in enumerate(zip(passages, timed, strict=True)):
+        if has_times and each.speed is not None:
+            key = "speed" if len(passages) == 1 else f"vehicles[{k}].speed"
+            raise ValueError(f"{key} = {each.speed:g}: not used with speeds in time")
+    needed = any(
+        each.speed is None and not has_times
+        for each, has_times in zip(passages, timed, strict=True)
+    )
+    if speed is None and needed:
+        raise ValueError("speed: missing; give it here or with every passage")
+    if speed is not None and not needed and any(timed):
+        raise ValueError(f"speed = {speed:g}: not used with speeds in time")
 
 
 def _core_passage(
