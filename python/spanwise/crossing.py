@@ -71,8 +71,8 @@ def cross(
         slope of bridge and road; or one of the drives that have numbers of their own.
     damping : float, array_like or Rayleigh, optional
         Ratio to critical damping, one for all modes or one for each; `Rayleigh`, or a table with
-        the key ``rayleigh`` and the values alpha and beta; or the damping matrix C at the moving
-        masses [N s/m], shape (stations, stations).
+        the key ``rayleigh`` and the value ``[alpha, beta]`` or ``{"alpha": ..., "beta": ...}``; or
+        the damping matrix C at the moving masses [N s/m], shape (stations, stations).
     road : Road, optional
         The road; smooth by default.
     approach : float, optional
