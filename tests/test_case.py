@@ -216,7 +216,7 @@ def test_drives_with_numbers(drive: str, expected: sw.Braking | sw.Speeds) -> No
 def test_what_vehicles_do_to_each_other_is_told_of_their_tables() -> None:
     tables = 2 * '[[traffic]]\nvehicle = { preset = "kishan-1973" }\n'
     case = sw.Case.parse(BRIDGE + tables + CROSSING)
-    said = r"^case, \[\[traffic\]\] number 1 and \[\[traffic\]\] number 2, lane = 0: they overlap"
+    said = r"^case: \[\[traffic\]\] number 1 and \[\[traffic\]\] number 2, lane = 0: they overlap"
     with pytest.raises(ValueError, match=said):
         case.run()
 
@@ -366,7 +366,11 @@ REFUSED = [
     (BRIDGE + "[vehicle]\nprest = 'a'" + CROSSING, r"'prest' \(did you mean 'preset'\?\)"),
     (
         BRIDGE + "[vehicle]" + CROSSING,
-        r"missing mass, pitch_inertia, axles; or bodies, loads or masses; or name a preset: kis",
+        r"missing mass, axles; or bodies, loads or masses; or name a preset: kis",
+    ),
+    (
+        BRIDGE + OWN_VEHICLE.replace("pitch_inertia = 52e3", "") + CROSSING,
+        r"\[vehicle\]: pitch_inertia = None: must be a number, for the body pitches",
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'cl-625'\nmass = 2" + CROSSING,
@@ -465,7 +469,7 @@ REFUSED = [
     ),
     (
         BRIDGE + TRAFFIC.replace("lane", "lanes") + CROSSING,
-        r"\[\[traffic\]\] number 2: unknown key 'lanes' \(did you mean 'lane'\?\); allowed: vehicle, ",
+        r"\[\[traffic\]\] number 2: unknown key 'lanes' \(did you mean 'lane'\?\); allowed: ",
     ),
     (
         BRIDGE + TRAFFIC.replace("acceleration = 0.5", "acceleration = nan") + CROSSING,

@@ -24,10 +24,8 @@ SPRING: Final = Keys.of(Spring)
 FORCES: Final = Keys.of(ForceTrain)
 MASSES: Final = Keys.of(MovingMasses)
 
-#: One body, which has no defaults for these.
-ONE: Final = Keys(
-    ("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "pitch_inertia", "axles")
-)
+#: One body, which needs a pitch inertia too unless it is on a single axle.
+ONE: Final = Keys(("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "axles"))
 SEVERAL: Final = Keys(("bodies",), ("bodies",))
 
 #: Keys of `ONE` that can be given beside the preset of a vehicle of one body.

@@ -174,7 +174,7 @@ def plain_drive(drive: Drive) -> str | dict[str, Any]:
     return {"kind": drive.kind, **given}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Passage:
     """A vehicle among others on a bridge.
 
@@ -223,6 +223,14 @@ class Passage:
             isinstance(self.lane, bool) or not isinstance(self.lane, int)
         ):
             raise ValueError(f"lane = {shown(self.lane)}: must be a whole number")
+
+    def __repr__(self) -> str:
+        given = [f"{self.vehicle!r} to the {self.direction}"]
+        given += [f"entry={self.entry:g}"] if self.entry else []
+        for key in ("speed", "drive", "lane", "road"):
+            value = getattr(self, key)
+            given += [] if value is None else [f"{key}={value!r}"]
+        return f"Passage({', '.join(given)})"
 
 
 def convoy(
