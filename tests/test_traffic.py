@@ -144,7 +144,7 @@ def test_braking_stops_where_energy_says() -> None:
 
 
 def test_brakes_that_never_come_on() -> None:
-    said = "the brakes never come on: it does not come to 80 m"
+    said = "the brakes never come on: its front axle never comes to start = 80 m"
     with pytest.warns(UserWarning, match=said):
         run = cross(drive=sw.Braking(deceleration=3.0, start=80.0))
     assert said in summary(run)

@@ -19,7 +19,9 @@ def remarks(run: Run, vehicle: int) -> list[str]:
     if _is_level(passage, drive):
         found.append("centres of mass at road level: no load transfer from braking or accelerating")
     if isinstance(drive, Braking) and not _comes_to(run, vehicle, drive.start):
-        found.append(f"the brakes never come on: it does not come to {drive.start:g} m")
+        found.append(
+            f"the brakes never come on: its front axle never comes to start = {drive.start:g} m"
+        )
     if run.vehicles[vehicle].stopped is not None and not _comes_to(run, vehicle, 0.0):
         found.append("stops before it reaches the bridge")
     return found
