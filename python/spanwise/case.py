@@ -56,8 +56,9 @@ class Case:
     ``[[vehicle.bodies]]`` for each `Body`, with its ``[[vehicle.bodies.axles]]``,
     ``[vehicle.bodies.hinge]`` and ``[[vehicle.bodies.springs]]``; or the arguments of `ForceTrain`
     or of `MovingMasses`. Or ``[vehicle]`` names a ``preset``, and beside it what is to be
-    different: of a vehicle of one body any key but the axles, of some trains a spacing, and
-    ``initial_friction``, a list of one force [N] for each axle.
+    different: of a vehicle of one body any key but the axles, of one of several bodies
+    ``cg_heights`` and ``hinge_height``, of some trains a spacing, and ``initial_friction``,
+    a list of one force [N] for each axle.
 
     In place of ``[vehicle]`` one table ``[[traffic]]`` for each of several vehicles has the
     arguments of `Passage`: a ``vehicle`` with the keys above, and how that one crosses.
