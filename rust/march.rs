@@ -240,13 +240,13 @@ impl<'a> March<'a> {
                 let a = stretch(first);
                 let near = margin(first, second);
                 if a[0] <= b[1] + near && b[0] <= a[1] + near {
-                    let value = format!("vehicles {i} and {j} in lane {}", second.lane);
+                    let key = format!("vehicles[{i}] and vehicles[{j}], lane");
                     let allowed = format!(
                         "they overlap at t = {time:.3} s, from {:.2} to {:.2} m and from {:.2} to {:.2} m; enter later, \
                          change the speed or use another lane",
                         a[0], a[1], b[0], b[1]
                     );
-                    return Err(Error::input("vehicles", value, allowed));
+                    return Err(Error::input(key, second.lane, allowed));
                 }
             }
         }

@@ -59,7 +59,10 @@ def test_copies_and_reports_make_the_same_bridge() -> None:
     clamps = run.envelope("clamp_moments")
     assert_array_equal(clamps.x, bridge.clamps)
     assert run.clamp_moments.shape == (len(run.time), 4)
-    assert "N m2" in summary(run)
+    assert "elastic at 15 m (3e+08 N/m, 4e+08 N m/rad), clamped at 32 m, elastic" in summary(run)
+    assert "hinge at 24 m" in summary(run)
+    # As it was given, not the slices of the taper.
+    assert "EI 2e+09, 4e+09, 1e+09 N m2 at 0, 15, 46 m; " in summary(run)
 
 
 def test_case_file() -> None:

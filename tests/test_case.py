@@ -140,7 +140,7 @@ def test_every_argument_is_a_key() -> None:
 
 TRAFFIC = """
 [[traffic]]
-vehicle = { preset = "half-car" }
+vehicle = { preset = "half-car", cg_height = 1.2 }
 speed = 15.0
 drive = { kind = "acceleration", acceleration = 0.5 }
 
@@ -166,7 +166,7 @@ def test_traffic_on_a_road() -> None:
     case = sw.Case.parse(BRIDGE + TRAFFIC + ROAD + CROSSING)
     drive = sw.Acceleration(acceleration=0.5)
     expected = (
-        sw.Passage(vehicle=sw.vehicles.half_car(), speed=15.0, drive=drive),
+        sw.Passage(vehicle=sw.vehicles.half_car(cg_height=1.2), speed=15.0, drive=drive),
         sw.Passage(
             vehicle=sw.ForceTrain(loads=[60e3, 90e3], spacings=[4.0]),
             direction="left",
@@ -204,10 +204,21 @@ def test_a_road_of_several_parts() -> None:
         ('{ kind = "acceleration", acceleration = -1 }', sw.Acceleration(acceleration=-1.0)),
     ],
 )
-def test_drives_with_numbers(drive: str, expected: sw.Braking) -> None:
-    run = sw.Case.parse(BRIDGE + VEHICLE + CROSSING + f"drive = {drive}\n").run()
-    same = sw.cross(run.bridge, run.truck, speed=22.86, modes=3, drive=expected)
+def test_drives_with_numbers(drive: str, expected: sw.Braking | sw.Speeds) -> None:
+    timed = isinstance(expected, sw.Speeds)
+    crossing = CROSSING.replace("speed = 22.86\n", "") if timed else CROSSING
+    run = sw.Case.parse(BRIDGE + VEHICLE + crossing + f"drive = {drive}\n").run()
+    speed = None if timed else 22.86
+    same = sw.cross(run.bridge, run.truck, speed=speed, modes=3, drive=expected)
     np.testing.assert_array_equal(run.moment, same.moment)
+
+
+def test_what_vehicles_do_to_each_other_is_told_of_their_tables() -> None:
+    tables = 2 * '[[traffic]]\nvehicle = { preset = "kishan-1973" }\n'
+    case = sw.Case.parse(BRIDGE + tables + CROSSING)
+    said = r"^case: \[\[traffic\]\] number 1 and \[\[traffic\]\] number 2, lane = 0: they overlap"
+    with pytest.raises(ValueError, match=said):
+        case.run()
 
 
 def test_a_measured_road_is_looked_for_beside_the_case(tmp_path: Path) -> None:
@@ -355,7 +366,11 @@ REFUSED = [
     (BRIDGE + "[vehicle]\nprest = 'a'" + CROSSING, r"'prest' \(did you mean 'preset'\?\)"),
     (
         BRIDGE + "[vehicle]" + CROSSING,
-        r"missing mass, pitch_inertia, axles; or bodies, loads or masses; or name a preset: kis",
+        r"missing mass, axles; or bodies, loads or masses; or name a preset: kis",
+    ),
+    (
+        BRIDGE + OWN_VEHICLE.replace("pitch_inertia = 52e3", "") + CROSSING,
+        r"\[vehicle\]: pitch_inertia = None: must be a number, for the body pitches",
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'cl-625'\nmass = 2" + CROSSING,
@@ -363,7 +378,8 @@ REFUSED = [
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'articulated-5-axle'\nmass = 2" + CROSSING,
-        r"'mass' \(not beside this preset\); allowed: preset, initial_friction",
+        r"'mass' \(not beside this preset\); allowed: preset, cg_heights, hinge_height, "
+        "initial_friction",
     ),
     (
         BRIDGE + "[vehicle]\npreset = 'hs20'\nrear_spacing = 10.0" + CROSSING,
@@ -447,27 +463,43 @@ REFUSED = [
         r"\[vehicle\] and \[\[traffic\]\]: give one of the two",
     ),
     (BRIDGE + "[traffic]\nspeed = 1" + CROSSING, r"traffic = .*: must be tables, \[\[traffic\]\]"),
-    (BRIDGE + "[[traffic]]\nspeed = 1" + CROSSING, r"case, traffic\[0\]: missing vehicle"),
+    (
+        BRIDGE + "[[traffic]]\nspeed = 1" + CROSSING,
+        r"case, \[\[traffic\]\] number 1: missing vehicle",
+    ),
     (
         BRIDGE + TRAFFIC.replace("lane", "lanes") + CROSSING,
-        r"traffic\[1\]: unknown key 'lanes' \(did you mean 'lane'\?\); allowed: vehicle, speed, ",
+        r"\[\[traffic\]\] number 2: unknown key 'lanes' \(did you mean 'lane'\?\); allowed: ",
     ),
-    (BRIDGE + TRAFFIC.replace("lane = 3", "lane = 3.5") + CROSSING, r"traffic\[1\]: lane = 3\.5: "),
+    (
+        BRIDGE + TRAFFIC.replace("acceleration = 0.5", "acceleration = nan") + CROSSING,
+        r"case, \[\[traffic\]\] number 1: acceleration = NaN: must be a finite number",
+    ),
+    (
+        BRIDGE + TRAFFIC.replace('direction = "left"', 'direction = "west"') + CROSSING,
+        r"case, \[\[traffic\]\] number 2: direction = \"west\": must be right or left",
+    ),
+    (
+        BRIDGE + TRAFFIC.replace("lane = 3", "lane = 3.5") + CROSSING,
+        r"\[\[traffic\]\] number 2: lane = 3\.5: ",
+    ),
     (
         BRIDGE + TRAFFIC.replace("half-car", "half-cart") + CROSSING,
-        r"traffic\[0\]: vehicle: preset = 'half-cart': .*did you mean 'half-car'",
+        r"\[\[traffic\]\] number 1: vehicle: preset = 'half-cart': .*did you mean 'half-car'",
     ),
     (
-        BRIDGE + TRAFFIC.replace('{ preset = "half-car" }', '"half-car"') + CROSSING,
-        r"traffic\[0\]: vehicle = 'half-car': must be a table",
+        BRIDGE
+        + TRAFFIC.replace('{ preset = "half-car", cg_height = 1.2 }', '"half-car"')
+        + CROSSING,
+        r"\[\[traffic\]\] number 1: vehicle = 'half-car': must be a table",
     ),
     (
         BRIDGE + TRAFFIC.replace("length = 2.0", "length = 0.0") + CROSSING,
-        r"traffic\[1\]: road: .*length",
+        r"\[\[traffic\]\] number 2: road: .*length",
     ),
     (
         BRIDGE + TRAFFIC.replace('"acceleration"', '"accelerate"') + CROSSING,
-        r"traffic\[0\]: drive kind = 'accelerate': .*did you mean 'acceleration'",
+        r"\[\[traffic\]\] number 1: drive kind = 'accelerate': .*did you mean 'acceleration'",
     ),
     (BRIDGE + VEHICLE + "lane = 1" + CROSSING, r"'lane' \(belongs in each \[\[traffic\]\]\)"),
     (BRIDGE + VEHICLE + CROSSING + "entry = 1", r"'entry' \(belongs in each \[\[traffic\]\]\)"),

@@ -131,8 +131,21 @@ def test_every_entry_is_tested() -> None:
 def test_what_was_recalled_says_so() -> None:
     recalled = {name for name, preset in vehicles.PRESETS.items() if preset.recalled}
     lorries = {f"flm4-{lorry}" for lorry in range(1, 6)}
-    assert recalled == {"quarter-car", "half-car", "hs20-44", "t44"} | lorries
-    for make in (vehicles.quarter_car, vehicles.half_car, vehicles.hs20_44, vehicles.t44):
+    assert recalled == {
+        "quarter-car",
+        "half-car",
+        "articulated-5-axle",
+        "hs20-44",
+        "t44",
+        *lorries,
+    }
+    for make in (
+        vehicles.quarter_car,
+        vehicles.half_car,
+        vehicles.articulated_5_axle,
+        vehicles.hs20_44,
+        vehicles.t44,
+    ):
         assert "recalled, not read at the source" in str(make.__doc__)
     assert "recalled, not read at the source" in str(vehicles.flm4.__doc__)
 
@@ -164,6 +177,46 @@ def test_as_toml_is_the_same_vehicle(name: str) -> None:
     truck = vehicles.PRESETS[name]()
     assert sw.Case.parse(as_toml(truck) + CROSSING).vehicle == truck
     assert sw.Case.parse(f'[vehicle]\npreset = "{name}"' + CROSSING).vehicle == truck
+
+
+def test_the_articulated_lorry_is_hardly_damped() -> None:
+    # All heaves alike on suspensions in series with tyres: c / (2 (k m)^(1/2)), where
+    # (t / (t + s))^2 of each damper is left.
+    truck = vehicles.articulated_5_axle()
+    tyres, suspensions = (
+        np.array([getattr(axle, f"{name}_stiffness") for axle in truck.axles])
+        for name in ("tyre", "suspension")
+    )
+    k = (tyres * suspensions / (tyres + suspensions)).sum()
+    c = (1e3 * (tyres / (tyres + suspensions)) ** 2).sum()
+    assert 0.003 < c / (2.0 * np.sqrt(k * 35_950.0)) < 0.015
+    assert "1e3 N s/m each, is very low" in str(vehicles.articulated_5_axle.__doc__)
+
+
+@pytest.mark.parametrize("name", ["articulated-5-axle", "hs20-44"])
+def test_heights_of_presets(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    truck = vehicles.PRESETS[name](cg_heights=(1.0, 1.9), hinge_height=1.2)
+    assert isinstance(truck, sw.Vehicle)
+    assert [body.cg_height for body in truck.bodies] == [1.0, 1.9]
+    assert truck.bodies[1].hinge is not None
+    assert truck.bodies[1].hinge.height == 1.2
+    table = f'[vehicle]\npreset = "{name}"\ncg_heights = [1.0, 1.9]\nhinge_height = 1.2\n'
+    assert sw.Case.parse(table + CROSSING).vehicle == truck
+    assert main(["vehicles", name]) == 0
+    assert "options   cg_heights = [0.0, 0.0], hinge_height = 0.0\n" in capsys.readouterr().out
+    with pytest.raises(ValueError, match=r"cg_heights = 1.5: give two, of the tractor and of"):
+        vehicles.PRESETS[name](cg_heights=1.5)
+
+
+@pytest.mark.parametrize("name", ["quarter-car", "half-car"])
+def test_height_of_a_preset_of_one_body(name: str) -> None:
+    truck = vehicles.PRESETS[name](cg_height=1.5)
+    assert isinstance(truck, sw.Vehicle)
+    assert truck.cg_height == 1.5
+    table = f'[vehicle]\npreset = "{name}"\ncg_height = 1.5\n'
+    assert sw.Case.parse(table + CROSSING).vehicle == truck
+    with pytest.raises(ValueError, match=r"'cg_heights' \(not beside this preset\)"):
+        sw.Case.parse(f'[vehicle]\npreset = "{name}"\ncg_heights = [1.0, 1.0]' + CROSSING)
 
 
 def test_the_list(capsys: pytest.CaptureFixture[str]) -> None:

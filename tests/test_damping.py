@@ -40,6 +40,8 @@ def test_it_is_a_set_of_ratios_and_a_matrix() -> None:
     rayleigh = sw.Rayleigh(0.3, 2e-4)
     by_rayleigh = moments(rayleigh)
     assert_allclose(by_rayleigh, moments({"rayleigh": [0.3, 2e-4]}), rtol=0.0, atol=0.0)
+    named = moments({"rayleigh": {"alpha": 0.3, "beta": 2e-4}})
+    assert_allclose(by_rayleigh, named, rtol=0.0, atol=0.0)
     ratios = rayleigh.ratios(bridge.modes(4).frequencies)
     assert_allclose(by_rayleigh, moments(ratios), rtol=0.0, atol=0.0)
     _, f = bridge.flexibility("actual")
@@ -60,7 +62,15 @@ def test_it_is_a_set_of_ratios_and_a_matrix() -> None:
         (lambda: sw.Rayleigh.from_ratios((1.0, 0.1), (9.0, 0.001)), ("beta", "negative")),
         (lambda: sw.Rayleigh.from_ratios(*BAD_PAIRS), ("first", "pair")),
         (lambda: moments(sw.Rayleigh(0.0, 0.1)), ("damping", "mode", "below 1")),
-        (lambda: moments({"rayleigh": 3.0}), ("rayleigh", "3.0", "pair")),
+        (
+            lambda: moments({"rayleigh": 3.0}),
+            ("damping rayleigh = 3.0: must be a pair, [alpha, beta] or { alpha = ..., beta",),
+        ),
+        (lambda: moments({"rayleigh": [1.0]}), ("damping rayleigh = [1.0]: must be a pair",)),
+        (
+            lambda: moments({"rayleigh": {"alpha": 1.0}}),
+            ("damping rayleigh = {'alpha': 1.0}: must be [alpha, beta] or { alpha",),
+        ),
         (lambda: moments({"reyleigh": [0.0, 0.0]}), ("damping", "reyleigh", "key rayleigh")),
     ],
 )

@@ -124,7 +124,11 @@ def test_the_settings_compute_the_run_again(run: sw.Run, report: dict[str, Any])
         (sw.vehicles.kishan_1973(), {"drive": sw.Braking(deceleration=4.0), "tail": 0.5}),
         (
             sw.MovingMasses(masses=[1e4, 2e4], spacings=[3.0]),
-            {"drive": sw.Speeds(times=[0.0, 1.0], speeds=[20.0, 10.0]), "lift_off": False},
+            {
+                "drive": sw.Speeds(times=[0.0, 1.0], speeds=[20.0, 10.0]),
+                "speed": None,
+                "lift_off": False,
+            },
         ),
         (
             sw.vehicles.quarter_car(),
@@ -412,3 +416,27 @@ def test_devices_are_not_replaced(run: sw.Run) -> None:
     with pytest.raises(OSError, match="is a device or pipe"):
         run.to_json("/dev/null")
     assert not Path("/dev/null").is_file()
+
+
+def test_the_summary_of_a_run() -> None:
+    bridge = sw.Bridge(spans=[18.0, 18.0], EI=1.9e9, mass=6e3, stations_per_span=3)
+    run = sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0, modes=3)
+    text = run.summary()
+    assert text.endswith(str(run.impact_factors))
+    assert run._repr_html_().startswith("<pre>bridge    36 m, ")
+    for name, of, scale in (
+        ("deflection, up [mm]", run.envelope("deflection"), 1e3),
+        ("reaction, uplift [kN]", run.envelope("reactions"), 1e-3),
+    ):
+        (line,) = [line for line in text.splitlines() if line.startswith(name)]
+        i = int(np.argmin(of.min.value))
+        value, static = of.min.value[i], of.static_min.value[i]
+        assert f"{scale * value:.3f} " in line
+        assert f"{scale * static:.3f} " in line
+        assert line.endswith(f"{value / static:.3f}")
+    assert "are to be read with the response itself" in text
+    # One span goes down and is pressed down.
+    simple = sw.Bridge(spans=[18.0], EI=1.9e9, mass=6e3)
+    force = sw.ForceTrain(loads=[1e5])
+    text = sw.cross(simple, force, speed=5.0, modes=1).summary()
+    assert "uplift" not in text

@@ -143,6 +143,61 @@ def test_braking_stops_where_energy_says() -> None:
     assert "braking by 3 m/s2 from 2 m after its end of the bridge, friction 0.7" in summary(run)
 
 
+def test_brakes_that_never_come_on() -> None:
+    said = "the brakes never come on: its front axle never comes to start = 80 m"
+    with pytest.warns(UserWarning, match=said):
+        run = cross(drive=sw.Braking(deceleration=3.0, start=80.0))
+    assert said in summary(run)
+
+
+@pytest.mark.parametrize("direction", ["right", "left"])
+def test_a_vehicle_that_stops_before_the_bridge(direction: Any) -> None:
+    said = "stops before it reaches the bridge"
+    drive = sw.Braking(deceleration=3.0, start=-35.0)
+    given = sw.Passage(vehicle=TRUCK, drive=drive, speed=8.0, direction=direction)
+    with pytest.warns(UserWarning, match=said):
+        run = sw.cross(BRIDGE, given, modes=2, approach=40.0)
+    assert said in summary(run)
+
+
+def test_a_speed_is_used_beside_speeds_in_time_by_another() -> None:
+    timed = passage(drive=sw.Speeds(times=[0.0], speeds=[15.0]), direction="left")
+    run = cross(passage(), timed)
+    assert run.settings["speed"] == 20.0
+    assert [motion.speed[0] for motion in run.vehicles] == [20.0, 15.0]
+
+
+LEVEL = "centres of mass at road level: no load transfer from braking or accelerating"
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        sw.Braking(deceleration=3.0),
+        sw.Acceleration(acceleration=1.0),
+        sw.Speeds(times=[0.0, 1.0], speeds=[12.0, 14.0]),
+    ],
+    ids=lambda drive: drive.kind,
+)
+def test_a_vehicle_without_heights_shifts_no_load(drive: Any) -> None:
+    speed = None if isinstance(drive, sw.Speeds) else 12.0
+    level, high = (sw.vehicles.half_car(cg_height=height) for height in (0.0, 1.5))
+    with pytest.warns(UserWarning, match=f"^{LEVEL}$"):
+        run = sw.cross(BRIDGE, level, speed=speed, modes=2, drive=drive)
+    assert LEVEL in summary(run)
+    both = [
+        sw.Passage(vehicle=TRUCK, speed=12.0),
+        sw.Passage(vehicle=level, drive=drive, speed=speed, direction="left"),
+    ]
+    with pytest.warns(UserWarning, match=re.escape(f"vehicles[1]: {LEVEL}")):
+        sw.cross(BRIDGE, both, modes=2)
+    # Neither where there is a height, nor where nothing is accelerated or there is one axle.
+    assert LEVEL not in summary(sw.cross(BRIDGE, high, speed=speed, modes=2, drive=drive))
+    assert LEVEL not in summary(sw.cross(BRIDGE, level, speed=12.0, modes=2))
+    alone = sw.vehicles.quarter_car()
+    assert LEVEL not in summary(sw.cross(BRIDGE, alone, speed=speed, modes=2, drive=drive))
+
+
 def test_friction_bounds_the_brakes() -> None:
     hard = sw.Braking(deceleration=9.0, friction=0.3)
     run = cross(drive=hard, speed=12.0)
@@ -215,7 +270,7 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     (lambda: cross(passage(speed=-2.0)), ("speed = -2",)),
     (
         lambda: cross(passage(), passage(entry=3.0, speed=-2.0)),
-        ("vehicles[1].speed = -2", "greater than 0"),
+        ("speed = -2", "greater than 0"),
     ),
     (lambda: passage(speed="fast"), ("speed = 'fast'", "number")),
     (lambda: cross(passage(entry=-1.0)), ("entry = -1", "0 or more")),
@@ -223,7 +278,26 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     (lambda: passage(lane=1.5), ("lane = 1.5", "whole number")),
     (lambda: passage(lane=True), ("lane = True", "whole number")),
     (lambda: passage(direction=1), ("direction = 1", "right or left")),
-    (lambda: cross(passage(direction="up")), ('direction = "up"', "right or left")),
+    (lambda: passage(direction="west"), ('direction = "west"', "must be right or left")),
+    (lambda: passage(drive="slow"), ('drive = "slow"', "constant-speed or constant-traction")),
+    (lambda: sw.Braking(deceleration=-3.0), ("braking deceleration = -3: must be finite and",)),
+    (lambda: sw.Acceleration(acceleration=nan), ("acceleration = NaN: must be a finite number",)),
+    (lambda: sw.Speeds(times=[2, 1], speeds=[1, 2]), ("times[1] = 1 s", "before it, 2 s")),
+    (lambda: sw.Speeds(times=[-1], speeds=[1]), ("times[0] = -1 s: must be 0 or more",)),
+    (
+        lambda: cross(drive=sw.Speeds(times=[0], speeds=[9])),
+        ("speed = 20: not used with speeds in time",),
+    ),
+    (
+        lambda: passage(speed=9.0, drive=sw.Speeds(times=[0], speeds=[9])),
+        ("speed = 9: not used with speeds in time",),
+    ),
+    (
+        lambda: cross(
+            passage(), passage(speed=9.0, lane=3), drive=sw.Speeds(times=[0], speeds=[9])
+        ),
+        ("vehicles[1].speed = 9: not used with speeds in time",),
+    ),
     (lambda: cross(drive="braking"), ('drive = "braking"', "constant-speed or constant-traction")),
     (lambda: cross(drive=3), ("drive = 3", "acceleration, speeds, braking")),
     (lambda: cross(drive={"kind": "brake"}), ("kind = 'brake'", "did you mean 'braking'?")),
@@ -249,10 +323,16 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
         lambda: cross(sw.Passage(vehicle=HS20), drive=sw.Braking(deceleration=4.0)),
         ('drive = "braking"', "forces and masses without a vehicle move as prescribed"),
     ),
-    (lambda: cross(passage(), passage()), ("vehicles 0 and 1 in lane 0", "overlap at t = 0.000")),
+    (
+        lambda: cross(passage(), passage()),
+        ("vehicles[0] and vehicles[1], lane = 0: they overlap at t = 0.000",),
+    ),
     (
         lambda: cross(passage(speed=10.0), passage(speed=30.0, entry=1.0)),
-        ("vehicles 0 and 1 in lane 0", "enter later, change the speed or use another lane"),
+        (
+            "vehicles[0] and vehicles[1], lane = 0",
+            "enter later, change the speed or use another lane",
+        ),
     ),
     (lambda: cross(road=ROAD, approach=10.0), ("path from -10 m", "covers only 0 m to 49 m")),
     (lambda: cross(passage(road=ROAD)), ("path from -100 m", "covers only 0 m to 49 m")),

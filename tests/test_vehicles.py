@@ -199,3 +199,42 @@ def test_trains_have_loads_and_nothing_that_vibrates() -> None:
         assert train.frequencies(locked=True).shape == (0,)
     assert dataclasses.replace(forces, loads=[1.0, 2.0]).positions == forces.positions
     assert sw.ForceTrain(loads=[5.0]).wheelbase == 0.0
+
+
+def test_frequencies_are_by_default_those_of_sliding_suspensions() -> None:
+    truck = sw.vehicles.kishan_1973()
+    assert_allclose(truck.frequencies(), truck.frequencies(locked=False), rtol=0)
+
+
+def test_what_does_not_pitch_needs_no_pitch_inertia() -> None:
+    free, given = (
+        sw.Vehicle(mass=20e3, pitch_inertia=inertia, axles=[axle(0.0)]) for inertia in (None, 6e4)
+    )
+    assert free.pitch_inertia is None
+    assert_allclose(free.frequencies(), given.frequencies(), rtol=0)
+    lower = sw.Body(mass=2e3, axles=[axle(0.0)])
+    upper = sw.Body(mass=9e3, springs=[sw.Spring(to=0, at=0.0, own=0.0, stiffness=1e6)])
+    assert sw.Vehicle(bodies=[lower, upper]).coordinates == ["body 1 heave", "body 2 heave"]
+    with pytest.raises(ValueError, match="pitch_inertia = None: must be a number"):
+        sw.Vehicle(mass=20e3, axles=[axle(1.0), axle(-1.0)])
+    with pytest.raises(ValueError, match=r"bodies\[0\]\.pitch_inertia = None: must be a number"):
+        sw.Vehicle(
+            bodies=[
+                dataclasses.replace(lower, axles=[axle(1.0), axle(-1.0)]),
+                upper,
+            ]
+        )
+
+
+def test_vehicles_and_passages_in_short() -> None:
+    assert repr(sw.vehicles.kishan_1973()) == "Vehicle(29.07 t, 2 axles, 4.267 m)"
+    truck = sw.vehicles.articulated_5_axle()
+    assert repr(truck) == "Vehicle(40 t, 2 bodies, 5 axles, 12.8 m)"
+    assert repr(sw.vehicles.quarter_car()) == "Vehicle(18 t, 1 axle, 0 m)"
+    assert repr(sw.Passage(vehicle=truck)) == f"Passage({truck!r} to the right)"
+    full = sw.Passage(
+        vehicle=truck, direction="left", entry=2.0, speed=9.0, drive="constant-speed", lane=3
+    )
+    assert repr(full) == (
+        f"Passage({truck!r} to the left, entry=2, speed=9.0, drive='constant-speed', lane=3)"
+    )

@@ -121,7 +121,7 @@ fn vehicles_may_not_overlap() {
     let fast = Passage { entry: 1.0, ..Passage::of(truck()) };
     let told = refused(&[slow.clone(), fast.clone()]);
     println!("{told}");
-    assert!(told.contains("vehicles 0 and 1 in lane 0") && told.contains("t = 1.525 s"), "{told}");
+    assert!(told.contains("vehicles[0] and vehicles[1], lane = 0") && told.contains("t = 1.525 s"), "{told}");
     // The same the other way round, and to the left.
     let left = |passage: &Passage| Passage { direction: Direction::Left, ..passage.clone() };
     assert!(refused(&[left(&fast), left(&slow)]).contains("t = 1.525 s"));

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
@@ -32,6 +33,35 @@ def number(key: str, value: object) -> float:
         return float(value)
     except OverflowError:
         raise ValueError(f"{key} = {shown(value)}: is too large") from None
+
+
+def finite(key: str, value: object) -> float:
+    """One finite real number as a float; refused in the words of the core, as the two below."""
+    found = number(key, value)
+    if not math.isfinite(found):
+        raise ValueError(f"{key} = {_plain(found)}: must be a finite number")
+    return found
+
+
+def positive(key: str, value: object) -> float:
+    """One finite real number above 0 as a float."""
+    found = number(key, value)
+    if not (math.isfinite(found) and found > 0.0):
+        raise ValueError(f"{key} = {_plain(found)}: must be finite and greater than 0")
+    return found
+
+
+def not_negative(key: str, value: object) -> float:
+    """One finite real number, 0 or more, as a float."""
+    found = number(key, value)
+    if not (math.isfinite(found) and found >= 0.0):
+        raise ValueError(f"{key} = {_plain(found)}: must be finite and 0 or more")
+    return found
+
+
+def _plain(value: float) -> str:
+    """As the core writes it."""
+    return "NaN" if math.isnan(value) else repr(value).removesuffix(".0")
 
 
 def numbers(key: str, value: object) -> list[float]:

@@ -24,10 +24,8 @@ SPRING: Final = Keys.of(Spring)
 FORCES: Final = Keys.of(ForceTrain)
 MASSES: Final = Keys.of(MovingMasses)
 
-#: One body, which has no defaults for these.
-ONE: Final = Keys(
-    ("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "pitch_inertia", "axles")
-)
+#: One body, which needs a pitch inertia too unless it is on a single axle.
+ONE: Final = Keys(("mass", "pitch_inertia", "axles", "cg_height"), ("mass", "axles"))
 SEVERAL: Final = Keys(("bodies",), ("bodies",))
 
 #: Keys of `ONE` that can be given beside the preset of a vehicle of one body.
@@ -36,8 +34,17 @@ CHANGED: Final = ("mass", "pitch_inertia", "cg_height")
 #: Kinds of vehicles, by the key that none but they have.
 KINDS: Final = {"bodies": SEVERAL, "loads": FORCES, "masses": MASSES}
 
+#: What some presets can be given, and nothing else.
+OPTIONS: Final = tuple(
+    key
+    for key in dict.fromkeys(option for preset in PRESETS.values() for option in preset.options)
+    if key not in ONE.allowed
+)
+
 PLACES: Final = {
-    "[vehicle]": Keys(("preset", *ONE.allowed, "bodies", *FORCES.allowed, *MASSES.allowed)),
+    "[vehicle]": Keys(
+        ("preset", *ONE.allowed, "bodies", *FORCES.allowed, *MASSES.allowed, *OPTIONS)
+    ),
     "each [[vehicle.axles]]": AXLE,
     "[vehicle.bodies.hinge]": HINGE,
     "each [[vehicle.bodies.springs]]": SPRING,
@@ -64,7 +71,9 @@ def vehicle_of(table: Table, elsewhere: Home) -> AnyVehicle:
         return MovingMasses(**table)
     if kind == "bodies":
         return Vehicle(bodies=_each("bodies", table["bodies"], "vehicle.bodies", _body, elsewhere))
-    Keys(("preset", *ONE.allowed, *KINDS)).check_known(table, elsewhere)
+    Keys(("preset", *ONE.allowed, *KINDS)).check_known(
+        table, lambda key: " (beside some presets only)" if key in OPTIONS else elsewhere(key)
+    )
     try:
         ONE.check_complete(table)
     except ValueError as error:
@@ -150,14 +159,16 @@ def _preset(table: Table, elsewhere: Home) -> AnyVehicle:
     vehicle = preset(**options)
     allowed = ["preset", *preset.options]
     if isinstance(vehicle, Vehicle):
-        allowed += [*(() if vehicle.bodies else CHANGED), "initial_friction"]
+        changed = () if vehicle.bodies else CHANGED
+        allowed += [key for key in (*changed, "initial_friction") if key not in allowed]
     known = PLACES["[vehicle]"].allowed
     Keys(tuple(allowed)).check_known(
         table, lambda key: " (not beside this preset)" if key in known else elsewhere(key)
     )
     if not isinstance(vehicle, Vehicle):
         return vehicle
-    vehicle = replace(vehicle, **{key: table[key] for key in CHANGED if key in table})
+    changes = {key: table[key] for key in CHANGED if key in table and key not in options}
+    vehicle = replace(vehicle, **changes)
     if "initial_friction" in table:
         friction = numbers("initial_friction", table["initial_friction"])
         vehicle = vehicle.with_initial_friction(*friction)

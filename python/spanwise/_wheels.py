@@ -59,15 +59,16 @@ class Wheels:
         """
         return self._core.static_loads(number("gravity", gravity))
 
-    def frequencies(self, *, locked: bool) -> Array:
+    def frequencies(self, *, locked: bool = False) -> Array:
         """Natural frequencies on rigid ground [Hz], ascending: bounce, pitch, axle hop.
 
         There is one for each of `coordinates`; of a single axle there is no pitch, of a train none.
 
         Parameters
         ----------
-        locked : bool
+        locked : bool, optional
             Whether friction holds, so that of a massless axle the tyre alone is a spring and
-            elsewhere the stick acts beside the spring; or all slides, and springs act alone.
+            elsewhere the stick acts beside the spring; or all slides (default), and springs act
+            alone. Without friction both are the same.
         """
         return self._core.frequencies(flag("locked", locked))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -39,6 +40,8 @@ TABLES: Final = {
     "road": "[road]",
     "crossing": "[crossing]",
 }
+#: A vehicle among several, and what of it, in a message about a crossing.
+VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +56,9 @@ class Case:
     ``[[vehicle.bodies]]`` for each `Body`, with its ``[[vehicle.bodies.axles]]``,
     ``[vehicle.bodies.hinge]`` and ``[[vehicle.bodies.springs]]``; or the arguments of `ForceTrain`
     or of `MovingMasses`. Or ``[vehicle]`` names a ``preset``, and beside it what is to be
-    different: of a vehicle of one body any key but the axles, of some trains a spacing, and
-    ``initial_friction``, a list of one force [N] for each axle.
+    different: of a vehicle of one body any key but the axles, of one of several bodies
+    ``cg_heights`` and ``hinge_height``, of some trains a spacing, and ``initial_friction``,
+    a list of one force [N] for each axle.
 
     In place of ``[vehicle]`` one table ``[[traffic]]`` for each of several vehicles has the
     arguments of `Passage`: a ``vehicle`` with the keys above, and how that one crosses.
@@ -172,7 +176,7 @@ class Case:
         else:
             passages = []
             for k, table in enumerate(tables["traffic"]):
-                with _errors_in(f"{source}, traffic[{k}]"):
+                with _errors_in(f"{source}, {_number(k)}"):
                     passages.append(passage_of(table, folder, _home))
         with _errors_in(f"{source}, [crossing]"):
             CROSSING.check_known(tables["crossing"], _home)
@@ -194,8 +198,17 @@ class Case:
             If the numerics fail, or under constant traction a vehicle comes to rest.
         """
         given = {"road": self.road, **self.crossing, **overrides}
-        with _errors_in(self.source if overrides else f"{self.source}, [crossing]"):
+        place = self.source if overrides else f"{self.source}, [crossing]"
+        try:
             return cross(self.bridge, self.passages, **given)
+        except ValueError as error:
+            said, named = VEHICLE.subn(lambda found: _number(int(found[1])), str(error))
+            raise CaseError(f"{self.source if named else place}: {said}") from error
+
+
+def _number(vehicle: int) -> str:
+    """What the table of a vehicle is called, which is counted from 0."""
+    return f"[[traffic]] number {vehicle + 1}"
 
 
 @contextmanager

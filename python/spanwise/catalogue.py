@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import MISSING, fields
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from spanwise._checks import shown
 from spanwise._keys import suggestion
@@ -79,7 +79,8 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     if preset.recalled:
         yield f"          {RECALLED.removeprefix('* ')}"
     if preset.options:
-        yield f"options   {', '.join(preset.options)}"
+        options = (f"{key} = {_value(default)}" for key, default in preset.options.items())
+        yield f"options   {', '.join(options)}"
     yield f"total     {_total(vehicle)}"
     loads = vehicle.static_loads() / 1e3
     yield f"axles     {_list(loads, '.1f')} kN, {_list(vehicle.axle_spacings, '.3f') or 0} m apart"
@@ -120,7 +121,7 @@ def _keys(of: DataclassInstance) -> Iterator[str]:
             yield f"{each.name} = {text}"
 
 
-def _value(value: Any) -> str | None:
+def _value(value: object) -> str | None:
     if isinstance(value, int | float):
         return repr(value)
     if isinstance(value, tuple) and all(isinstance(each, float) for each in value):

@@ -28,7 +28,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 0, 2 for bad input, 1 if the numerics fail."""
     try:
         options = _parser().parse_args(arguments)
-        _say(options.work(options))
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always", UserWarning)
+            text = options.work(options)
+        for each in told:
+            print(f"spanwise: warning: {each.message}", file=sys.stderr)
+        _say(text)
     except KeyboardInterrupt:
         print("spanwise: interrupted", file=sys.stderr)
         return INTERRUPTED

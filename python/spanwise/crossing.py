@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, get_args
 
 from spanwise import _core
 from spanwise._checks import count, flag, number, numbers, shown, word
+from spanwise._remarks import remarks
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, resolved
@@ -59,7 +61,8 @@ def cross(
     vehicle : Vehicle, ForceTrain, MovingMasses, Passage or sequence of Passage
         The vehicle, or several, each with its own way of crossing.
     speed : float, optional
-        Speed at the start [m/s]; needed unless every passage, or the drive, has its own.
+        Speed at the start [m/s]; needed unless every passage, or the drive, has its own, and not
+        allowed beside `Speeds` where nothing uses it.
     modes : int, optional
         Number of natural modes included. By default two for each span, at least three, at most as
         many as there are masses.
@@ -68,8 +71,8 @@ def cross(
         slope of bridge and road; or one of the drives that have numbers of their own.
     damping : float, array_like or Rayleigh, optional
         Ratio to critical damping, one for all modes or one for each; `Rayleigh`, or a table with
-        the key ``rayleigh`` and the values alpha and beta; or the damping matrix C at the moving
-        masses [N s/m], shape (stations, stations).
+        the key ``rayleigh`` and the value ``[alpha, beta]`` or ``{"alpha": ..., "beta": ...}``; or
+        the damping matrix C at the moving masses [N s/m], shape (stations, stations).
     road : Road, optional
         The road; smooth by default.
     approach : float, optional
@@ -113,6 +116,12 @@ def cross(
     RuntimeError
         If the numerics fail, or under constant traction a vehicle comes to rest.
 
+    Warns
+    -----
+    UserWarning
+        If a vehicle brakes or accelerates and has all its centres of mass at road level, if its
+        brakes never come on, or if it stops before it reaches the bridge.
+
     Notes
     -----
     An axle that drives on to a *free* end of the bridge loads it suddenly with all it carries, and
@@ -134,10 +143,8 @@ def cross(
         raise TypeError(f"road = {road!r}: must be a Road")
     surface = Smooth() if road is None else road
     driven = drive_of(drive)
-    if speed is not None:
-        speed = number("speed", speed)
-    elif any(each.speed is None and not _timed(each.drive or driven) for each in passages):
-        raise ValueError("speed: missing; give it here or with every passage")
+    speed = None if speed is None else number("speed", speed)
+    _check_speed(passages, speed, driven)
     uneven = not all((each.road or surface).is_smooth for each in passages)
     if approach is None:
         approach = APPROACH if uneven else 0.0
@@ -190,7 +197,12 @@ def cross(
         settings["damping"] = ratios[0]
     if speed is None:
         del settings["speed"]
-    return Run(bridge, passages, surface, settings, core)
+    run = Run(bridge, passages, surface, settings, core)
+    for k in range(len(passages)):
+        for remark in remarks(run, k):
+            whose = "" if len(passages) == 1 else f"vehicles[{k}]: "
+            warnings.warn(f"{whose}{remark}", UserWarning, stacklevel=2)
+    return run
 
 
 def _passages(vehicle: object) -> tuple[Passage, ...]:
@@ -209,8 +221,21 @@ def _passages(vehicle: object) -> tuple[Passage, ...]:
     )
 
 
-def _timed(drive: Drive) -> bool:
-    return isinstance(drive, Speeds)
+def _check_speed(passages: tuple[Passage, ...], speed: float | None, drive: Drive) -> None:
+    """Refuses a speed that is missing, and one beside speeds in time that nothing uses."""
+    timed = [isinstance(each.drive or drive, Speeds) for each in passages]
+    for k, (each, has_times) in enumerate(zip(passages, timed, strict=True)):
+        if has_times and each.speed is not None:
+            key = "speed" if len(passages) == 1 else f"vehicles[{k}].speed"
+            raise ValueError(f"{key} = {each.speed:g}: not used with speeds in time")
+    needed = any(
+        each.speed is None and not has_times
+        for each, has_times in zip(passages, timed, strict=True)
+    )
+    if speed is None and needed:
+        raise ValueError("speed: missing; give it here or with every passage")
+    if speed is not None and not needed and any(timed):
+        raise ValueError(f"speed = {speed:g}: not used with speeds in time")
 
 
 def _core_passage(

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import array, number, numbers, pairs, shown
+from spanwise._checks import array, number, numbers, shown
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -77,7 +77,11 @@ class Rayleigh:
         return 0.5 * (self.alpha / omega + self.beta * omega)
 
 
-#: Accepted as damping: ratios, a matrix C, `Rayleigh`, or a table ``{rayleigh = [alpha, beta]}``.
+#: Forms of the key ``rayleigh``.
+FORMS: Final = "[alpha, beta] or { alpha = ..., beta = ... }"
+
+#: Accepted as damping: ratios, a matrix C, `Rayleigh`, or a table ``{rayleigh = [alpha, beta]}`` or
+#: ``{rayleigh = {alpha = ..., beta = ...}}``.
 Damping: TypeAlias = ArrayLike | Rayleigh | Mapping[str, Any]
 
 
@@ -87,9 +91,9 @@ def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[fl
         if list(damping) != ["rayleigh"]:
             raise ValueError(
                 f"damping = {shown(dict(damping))}: must be a number, a list or a matrix, or a "
-                "table with the key rayleigh and the values alpha and beta"
+                f"table with the key rayleigh, {FORMS}"
             )
-        damping = Rayleigh(*_pair("damping rayleigh", damping["rayleigh"]))
+        damping = _rayleigh(damping["rayleigh"])
     if isinstance(damping, Rayleigh):
         ratios = damping.ratios(frequencies())
         for mode, ratio in enumerate(ratios, start=1):
@@ -113,5 +117,18 @@ def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[fl
     )
 
 
+def _rayleigh(value: object) -> Rayleigh:
+    """From a pair or a table."""
+    if isinstance(value, Mapping):
+        if sorted(map(str, value)) != ["alpha", "beta"]:
+            raise ValueError(f"damping rayleigh = {shown(dict(value))}: must be {FORMS}")
+        return Rayleigh(**value)
+    if not isinstance(value, list | tuple | np.ndarray) or len(value) != 2:
+        raise ValueError(f"damping rayleigh = {shown(value)}: must be a pair, {FORMS}")
+    return Rayleigh(*value)
+
+
 def _pair(key: str, value: object) -> tuple[Any, Any]:
-    return pairs(key, [value])[0]
+    if not isinstance(value, list | tuple | np.ndarray) or len(value) != 2:
+        raise ValueError(f"{key} = {shown(value)}: must be a pair of frequency and ratio")
+    return value[0], value[1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -444,6 +445,15 @@ class Run(Responses):
             f"{self.steps} steps of {self.settings['step']:.4g} s, "
             f"{len(self.sections)} sections, recovery by {self.settings['recovery']})"
         )
+
+    def summary(self) -> str:
+        """Bridge, vehicles, road and settings, governing responses and impact factors, as text."""
+        from spanwise.summary import summary
+
+        return summary(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.summary())}</pre>"
 
     @property
     def supports(self) -> Array:

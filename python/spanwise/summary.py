@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._remarks import remarks
 from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
+from spanwise.layout import Support
 from spanwise.roads import ISO8608, Profile, Road, Sum
-from spanwise.run import Extremes, Run
+from spanwise.run import Envelope, Extremes, Quantity, Run
 from spanwise.table import factor_text
 from spanwise.traffic import Passage, plain_drive
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
+
+#: Part of the largest response below which one of the other sign is not shown.
+OPPOSITE: Final = 0.02
 
 
 def summary(run: Run) -> str:
@@ -54,7 +59,9 @@ def roughness(road: Road, start: float | None = None, end: float | None = None) 
 
 def _description(run: Run) -> Iterator[str]:
     bridge, used = run.bridge, run.settings
-    held = ", ".join(f"{kind} at {x:g} m" for x, kind in bridge.supports)
+    held = ", ".join(
+        [*map(_support, bridge.springs), *(f"hinge at {x:g} m" for x in bridge.hinges)]
+    )
     rigidities = _rigidity(bridge)
     ratios = np.asarray(used["damping"])
     damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
@@ -103,6 +110,8 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
         lane = int(passage.direction == "left") if passage.lane is None else passage.lane
         way[:0] = [f"to the {passage.direction} in lane {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
+    for remark in remarks(run, number):
+        yield f"          {remark}"
     if passage.road is not None:
         yield f"          on a road of its own: {_road(passage.road)}"
 
@@ -184,16 +193,32 @@ def _frequencies(truck: AnyVehicle) -> Iterator[str]:
             yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"
 
 
+def _support(support: Support) -> str:
+    """Kind and place, of springs the stiffnesses."""
+    place = f"{support.kind} at {support.at:g} m"
+    if support.kind != "elastic":
+        return place
+    words = "rigid" if np.isinf(support.vertical) else f"{support.vertical:.4g} N/m"
+    if support.rotation > 0.0:
+        turns = support.rotation
+        words += ", clamped" if np.isinf(turns) else f", {turns:.4g} N m/rad"
+    return f"{place} ({words})"
+
+
 def _rigidity(bridge: Bridge) -> str:
-    """EI: its values, or its range where there are many; nothing if it is unknown."""
+    """EI as it was given, or its range where there are many values; nothing if it is unknown."""
     if not bridge.described:
         return ""
-    values = bridge.EI
+    given = bridge.arguments["EI"]
+    at, values = (given["at"], given["values"]) if isinstance(given, Mapping) else (None, given)
     if np.ptp(values) == 0.0:
-        values = values[:1]
+        return f"EI {values[0]:.5g} N m2; "
     if len(values) > 8:
-        return f"EI {values.min():.5g} to {values.max():.5g} N m2; "
-    return f"EI {_list(values, '.5g')} N m2; "
+        return f"EI {min(values):.5g} to {max(values):.5g} N m2; "
+    text = f"EI {_list(values, '.5g')} N m2"
+    if at is not None:
+        text += f" {'at' if len(at) == len(values) else 'between'} {_list(at, 'g')} m"
+    return f"{text}; "
 
 
 def _governing(run: Run) -> list[str]:
@@ -207,6 +232,17 @@ def _governing(run: Run) -> list[str]:
     axles = [name.replace("vehicle", "veh.") for name in axle_names(run)]
     most = _larger(shear.max, shear.min)
     static = _larger(shear.static_max, shear.static_min)
+
+    def upward(
+        name: str, of: Envelope, quantity: Quantity, places: list[str], scale: float = 1e-3
+    ) -> list[str]:
+        """What goes the other way, if it is more than nothing."""
+        if not of.min.value.min() < -OPPOSITE * of.max.value.max():
+            return []
+        lifted = run._core.impact_factors(quantity, "negative", factors.ratio, factors.mask)
+        i = int(np.argmin(of.min.value))
+        return [_row(name, of.min, of.static_min, lifted, places, scale, i)]
+
     return [
         f"{'largest':<24}{'dynamic':>10}{'at':>14}{'time [s]':>10}{'front axle [m]':>16}"
         f"{'static':>10}{'factor':>8}",
@@ -218,12 +254,15 @@ def _governing(run: Run) -> list[str]:
             sections,
             1e3,
         ),
+        *upward("deflection, up [mm]", deflection, "deflection", sections, 1e3),
         _row("moment, sagging [kN m]", moment.max, moment.static_max, factors.sagging, sections),
         _row("moment, hogging [kN m]", moment.min, moment.static_min, factors.hogging, sections),
         _row("shear [kN]", most, static, factors.shear, sections),
         _row("reaction, up [kN]", reactions.max, reactions.static_max, factors.reactions, supports),
+        *upward("reaction, uplift [kN]", reactions, "reactions", supports),
         _row("axle load [kN]", loads.max, loads.static_max, factors.axle_loads, axles),
         "static: the largest at the same place under the static axle loads",
+        "factors far from where a response governs are to be read with the response itself",
     ]
 
 
@@ -234,8 +273,9 @@ def _row(
     factors: Array,
     places: list[str],
     scale: float = 1e-3,
+    at: int | None = None,
 ) -> str:
-    i = int(np.argmax(np.abs(dynamic.value)))
+    i = int(np.argmax(np.abs(dynamic.value))) if at is None else at
     beside = round(static.value[i] * scale, 3) + 0.0  # never -0.000
     return (
         f"{name:<24}{dynamic.value[i] * scale:>10.3f}{places[i]:>14}{dynamic.time[i]:>10.4f}"

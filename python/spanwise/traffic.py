@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, Final, Literal, TypeAlias, get_args
 
-from spanwise._checks import number, numbers, shown, word
+from spanwise._checks import finite, not_negative, number, numbers, positive, shown, word
 from spanwise._keys import Keys, suggestion
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
@@ -30,13 +30,21 @@ class Acceleration:
     acceleration : float
         Acceleration [m/s2]. If negative the vehicle comes to a stop, and if it is then still on the
         bridge, it stays.
+
+    Notes
+    -----
+    The speed at the start must be greater than 0. A start from rest is given by `Speeds`, such as
+    ``Speeds(times=[0, 10], speeds=[0, 15])``.
     """
 
     kind: ClassVar[str] = "acceleration"
     acceleration: float
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "acceleration", finite("acceleration", self.acceleration))
+
     def _core(self) -> CoreDrive:
-        return self.kind, [number("acceleration", self.acceleration)], []
+        return self.kind, [self.acceleration], []
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,8 +63,28 @@ class Speeds:
     times: Sequence[float]
     speeds: Sequence[float]
 
+    def __post_init__(self) -> None:
+        times, speeds = numbers("times", self.times), numbers("speeds", self.speeds)
+        if not times or len(times) != len(speeds):
+            raise ValueError(
+                f"speeds = {len(times)} times and {len(speeds)} speeds: give as many speeds as "
+                "times, one or more"
+            )
+        for i, (time, speed) in enumerate(zip(times, speeds, strict=True)):
+            finite(f"times[{i}]", time)
+            not_negative(f"speeds[{i}]", speed)
+            if i == 0 and time < 0.0:
+                raise ValueError(f"times[0] = {time:g} s: must be 0 or more")
+            if i > 0 and time <= times[i - 1]:
+                raise ValueError(
+                    f"times[{i}] = {time:g} s: must be greater than the time before it, "
+                    f"{times[i - 1]:g} s"
+                )
+        object.__setattr__(self, "times", tuple(times))
+        object.__setattr__(self, "speeds", tuple(speeds))
+
     def _core(self) -> CoreDrive:
-        return self.kind, numbers("times", self.times), numbers("speeds", self.speeds)
+        return self.kind, [*self.times], [*self.speeds]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,9 +119,14 @@ class Braking:
     ramp: float = 0.4
     friction: float = 0.7
 
+    def __post_init__(self) -> None:
+        checks = {"deceleration": positive, "start": finite, "ramp": not_negative}
+        for key, value in asdict(self).items():
+            check = checks.get(key, positive)
+            object.__setattr__(self, key, check(f"braking {key}", value))
+
     def _core(self) -> CoreDrive:
-        named = asdict(self)
-        return self.kind, [number(f"braking {key}", value) for key, value in named.items()], []
+        return self.kind, [*asdict(self).values()], []
 
 
 Drive: TypeAlias = Plain | Acceleration | Speeds | Braking
@@ -120,9 +153,12 @@ def drive_of(value: object) -> Drive:
             raise ValueError(f"drive of kind {kind}: {error}") from None
         return KINDS[kind](**table)
     try:
-        return word("drive", value, *get_args(Plain))  # type: ignore[return-value]
+        plain = word("drive", value, *get_args(Plain))
+        if plain not in get_args(Plain):
+            raise ValueError(f'drive = "{plain}": must be constant-speed or constant-traction')
     except ValueError as error:
         raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
+    return plain  # type: ignore[return-value]
 
 
 def core_drive(drive: Drive) -> CoreDrive:
@@ -132,10 +168,13 @@ def core_drive(drive: Drive) -> CoreDrive:
 
 def plain_drive(drive: Drive) -> str | dict[str, Any]:
     """As a case file writes it."""
-    return drive if isinstance(drive, str) else {"kind": drive.kind, **asdict(drive)}
+    if isinstance(drive, str):
+        return drive
+    given = {k: [*v] if isinstance(v, tuple) else v for k, v in asdict(drive).items()}
+    return {"kind": drive.kind, **given}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Passage:
     """A vehicle among others on a bridge.
 
@@ -144,7 +183,7 @@ class Passage:
     vehicle : Vehicle, ForceTrain or MovingMasses
         The vehicle.
     speed : float, optional
-        Speed at the start [m/s]; by default that of the crossing.
+        Speed at the start [m/s]; by default that of the crossing. Not beside `Speeds`.
     drive : str, Acceleration, Speeds or Braking, optional
         How it is driven; by default as the crossing says.
     direction : {"right", "left"}, optional
@@ -172,15 +211,26 @@ class Passage:
         if self.road is not None and not isinstance(self.road, Road):
             raise TypeError(f"road = {shown(self.road)}: must be a Road")
         if self.speed is not None:
-            object.__setattr__(self, "speed", number("speed", self.speed))
+            object.__setattr__(self, "speed", positive("speed", self.speed))
         if self.drive is not None:
             object.__setattr__(self, "drive", drive_of(self.drive))
-        object.__setattr__(self, "entry", number("entry", self.entry))
-        word("direction", self.direction, *get_args(Direction))
+        if self.speed is not None and isinstance(self.drive, Speeds):
+            raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
+        object.__setattr__(self, "entry", not_negative("entry", self.entry))
+        if word("direction", self.direction, *get_args(Direction)) not in get_args(Direction):
+            raise ValueError(f'direction = "{self.direction}": must be right or left')
         if self.lane is not None and (
             isinstance(self.lane, bool) or not isinstance(self.lane, int)
         ):
             raise ValueError(f"lane = {shown(self.lane)}: must be a whole number")
+
+    def __repr__(self) -> str:
+        given = [f"{self.vehicle!r} to the {self.direction}"]
+        given += [f"entry={self.entry:g}"] if self.entry else []
+        for key in ("speed", "drive", "lane", "road"):
+            value = getattr(self, key)
+            given += [] if value is None else [f"{key}={value!r}"]
+        return f"Passage({', '.join(given)})"
 
 
 def convoy(

@@ -40,10 +40,12 @@ class Axle:
         static state does not determine it, and it matters: consider both signs.
     stick_stiffness : float, optional
         Stiffness by which friction builds up before it slides [N/m], for axles with a mass: by
-        default 20 times that of the tyre. Friction of a massless axle holds rigidly.
+        default 20 times that of the tyre. Friction of a massless axle holds rigidly unless it has
+        `leaf_decay`.
     leaf_decay : float, optional
         Stroke within which the friction of a leaf spring goes towards its limit [m], some
-        millimetres; in place of `stick_stiffness`.
+        millimetres; in place of `stick_stiffness`. Of a massless axle too, whose friction then
+        builds up with the stroke and does not hold rigidly.
 
     References
     ----------
@@ -78,7 +80,7 @@ class Hinge:
     own : float
         Distance of the hinge ahead of the centre of mass of the body that has it [m].
     height : float, optional
-        Height above the road [m]; matters where vehicles roll freely only.
+        Height above the road [m]; matters wherever the vehicle is accelerated or rolls freely.
     """
 
     to: int
@@ -128,12 +130,14 @@ class Body:
     ----------
     mass : float
         Mass [kg].
-    pitch_inertia : float
-        Moment of inertia about the centre of mass [kg m2].
+    pitch_inertia : float, optional
+        Moment of inertia about the centre of mass [kg m2]. Not needed of a body that does not
+        pitch: one with its one axle, and all that joins it to others, at its centre of mass.
     axles : sequence of Axle, optional
         Its axles, front first.
     cg_height : float, optional
-        Height of the centre of mass above the road [m]; matters where vehicles roll freely only.
+        Height of the centre of mass above the road [m]; matters wherever the vehicle is accelerated
+        (braking, acceleration, speeds in time) or rolls freely.
     hinge : Hinge, optional
         A hinge to an earlier body.
     springs : sequence of Spring, optional
@@ -141,7 +145,7 @@ class Body:
     """
 
     mass: float
-    pitch_inertia: float
+    pitch_inertia: float = None  # type: ignore[assignment]
     axles: Sequence[Axle] = ()
     cg_height: float = 0.0
     hinge: Hinge | None = None
@@ -159,7 +163,7 @@ class Body:
         return (*(() if self.hinge is None else (self.hinge,)), *self.springs)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Vehicle(Wheels):
     """Rigid bodies that bounce, pitch and roll along on their axles.
 
@@ -171,12 +175,14 @@ class Vehicle(Wheels):
     mass : float, optional
         Mass of the one body [kg], without unsprung masses. None where there are several bodies.
     pitch_inertia : float, optional
-        Moment of inertia about its centre of mass [kg m2]. None where there are several bodies.
+        Moment of inertia about its centre of mass [kg m2]. None where there are several bodies; not
+        needed on a single axle, on which it does not pitch.
     axles : sequence of Axle, optional
         Its axles, front first. A single axle stands below the centre of mass. Of a vehicle of
         several bodies the axles of all, front first, each with its position in its own body.
     cg_height : float, optional
-        Height of the centre of mass above the road [m]; matters under constant traction only.
+        Height of the centre of mass above the road [m]; matters wherever the vehicle is accelerated
+        (braking, acceleration, speeds in time) or rolls freely (constant traction).
     bodies : sequence of Body, optional
         The bodies, each but the first hinged or sprung to earlier ones. Empty where there is one.
 
@@ -222,10 +228,11 @@ class Vehicle(Wheels):
             for name in ("mass", "pitch_inertia", "axles", "cg_height"):
                 object.__setattr__(self, name, getattr(body, name))
             bodies = ()
+        parts = bodies or (self._one_body(),)
         core = _core.Vehicle(
             [
-                _body(body, f"bodies[{b}]." if bodies else "")
-                for b, body in enumerate(bodies or (self._one_body(),))
+                _body(body, f"bodies[{b}]." if bodies else "", _pitches(parts, b))
+                for b, body in enumerate(parts)
             ]
         )
         if bodies:
@@ -263,6 +270,11 @@ class Vehicle(Wheels):
                 raise ValueError(
                     f"{name} = {shown(value)}: not beside bodies, which have their own"
                 )
+
+    def __repr__(self) -> str:
+        bodies = f"{len(self.bodies)} bodies, " if self.bodies else ""
+        axles = f"{len(self.axles)} axle{'s' if len(self.axles) > 1 else ''}"
+        return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{axles}, {self.wheelbase:.4g} m)"
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its fields, so that it can go to another process."""
@@ -319,11 +331,25 @@ def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:
     return tuple(values)
 
 
-def _body(body: Body, prefix: str) -> _core._Body:
+def _pitches(bodies: Sequence[Body], b: int) -> bool:
+    """Whether anything acts on a body away from its centre of mass."""
+    own = [*(axle.position for axle in bodies[b].axles), *(end.own for end in bodies[b].joints)]
+    there = [end.at for body in bodies for end in body.joints if end.to == b]
+    return any(place != 0.0 for place in (*own, *there))
+
+
+def _body(body: Body, prefix: str, pitches: bool) -> _core._Body:
     mass = "vehicle mass" if not prefix else f"{prefix}mass"
+    # Of a body that does not pitch any inertia will do.
+    inertia: object = body.pitch_inertia
+    if inertia is None and pitches:
+        raise ValueError(f"{prefix}pitch_inertia = None: must be a number, for the body pitches")
+    if inertia is None:
+        inertia = 1.0
     values = [
         number(mass, body.mass),
-        *(number(prefix + name, getattr(body, name)) for name in ("pitch_inertia", "cg_height")),
+        number(f"{prefix}pitch_inertia", inertia),
+        number(f"{prefix}cg_height", body.cg_height),
     ]
     axles = [_axle(axle, f"{prefix}axles[{k}].") for k, axle in enumerate(body.axles)]
     hinge = None

@@ -5,13 +5,13 @@ Values that are recalled from a source, and not checked against it, are marked s
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from inspect import signature
 from typing import Any, Final, TypeAlias
 
-from spanwise._checks import count, number
+from spanwise._checks import count, number, numbers, shown
 from spanwise._wheels import GRAVITY
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Vehicle
@@ -74,10 +74,16 @@ def kishan_1973() -> Vehicle:
     )
 
 
-def quarter_car() -> Vehicle:
+def quarter_car(*, cg_height: float = 0.0) -> Vehicle:
     """A quarter of a lorry: 17.3 t on one axle of 0.7 t (recalled, not read at the source).
 
     It does not pitch; its pitch inertia is not used.
+
+    Parameters
+    ----------
+    cg_height : float, optional
+        Height of the centre of mass above the road [m], which is not stated. Braking moves no load
+        from a single axle.
 
     References
     ----------
@@ -91,11 +97,17 @@ def quarter_car() -> Vehicle:
         mass=700.0,
         suspension_damping=1e4,
     )
-    return Vehicle(mass=17_300.0, pitch_inertia=17_300.0, axles=[axle])
+    return Vehicle(mass=17_300.0, pitch_inertia=17_300.0, cg_height=cg_height, axles=[axle])
 
 
-def half_car() -> Vehicle:
+def half_car(*, cg_height: float = 0.0) -> Vehicle:
     """A two-axle lorry of 18 t, axles 4.75 m apart (recalled, not read at the source).
+
+    Parameters
+    ----------
+    cg_height : float, optional
+        Height of the centre of mass above the road [m], which is not stated. At 0 (default) braking
+        moves no load from axle to axle.
 
     References
     ----------
@@ -116,14 +128,26 @@ def half_car() -> Vehicle:
         mass=1_100.0,
         suspension_damping=2e4,
     )
-    return Vehicle(mass=16_200.0, pitch_inertia=93_457.0, axles=[front, rear])
+    return Vehicle(mass=16_200.0, pitch_inertia=93_457.0, cg_height=cg_height, axles=[front, rear])
 
 
-def articulated_5_axle() -> Vehicle:
-    """An articulated lorry of 40 t with two axles in front and three behind the fifth wheel.
+def articulated_5_axle(
+    *, cg_heights: Sequence[float] = (0.0, 0.0), hinge_height: float = 0.0
+) -> Vehicle:
+    """An articulated lorry of 40 t with a fifth wheel (recalled, not read at the source).
 
-    Tractor and semi-trailer are hinged 2.15 m behind the centre of mass of the tractor. Heights of
-    the centres of mass are not stated; they are zero here.
+    Two axles in front, three behind. Tractor and semi-trailer are hinged 2.15 m behind the centre
+    of mass of the tractor. The damping of the suspensions, 1e3 N s/m each, is very low, about 1 %
+    of critical in bounce: check it before relying on how the lorry sways out. Which paper the
+    values are from is not settled.
+
+    Parameters
+    ----------
+    cg_heights : sequence of float, optional
+        Heights of the centres of mass of tractor and semi-trailer above the road [m], which are not
+        stated. At 0 (default) braking moves no load from axle to axle.
+    hinge_height : float, optional
+        Height of the fifth wheel above the road [m].
 
     References
     ----------
@@ -145,21 +169,31 @@ def articulated_5_axle() -> Vehicle:
             (0.5, -2.5, -1.8, -2.9, -4.0), masses, suspensions, tyres, strict=True
         )
     ]
-    tractor = Body(mass=4_500.0, pitch_inertia=4_604.0, axles=axles[:2])
+    front, rear = _heights(cg_heights)
+    tractor = Body(mass=4_500.0, pitch_inertia=4_604.0, axles=axles[:2], cg_height=front)
     trailer = Body(
         mass=31_450.0,
         pitch_inertia=16_302.0,
         axles=axles[2:],
-        hinge=Hinge(to=0, at=-2.15, own=6.15),
+        cg_height=rear,
+        hinge=Hinge(to=0, at=-2.15, own=6.15, height=hinge_height),
     )
     return Vehicle(bodies=[tractor, trailer])
 
 
-def hs20_44() -> Vehicle:
+def hs20_44(*, cg_heights: Sequence[float] = (0.0, 0.0), hinge_height: float = 0.0) -> Vehicle:
     """The AASHTO HS20-44 truck as tractor and semi-trailer (recalled, not read at the source).
 
     Wheel masses, springs and dampers are twice those of a wheel line, bodies and pitch inertias
-    those of the whole truck. Heights of the centres of mass are zero here.
+    those of the whole truck.
+
+    Parameters
+    ----------
+    cg_heights : sequence of float, optional
+        Heights of the centres of mass of tractor and semi-trailer above the road [m], which are not
+        stated. At 0 (default) braking moves no load from axle to axle.
+    hinge_height : float, optional
+        Height of the fifth wheel above the road [m].
 
     References
     ----------
@@ -184,12 +218,14 @@ def hs20_44() -> Vehicle:
             (-2.283, 653.0, 1_969_034.0, 7_182.0, 3_507_429.0),
         )
     ]
-    tractor = Body(mass=2_612.0, pitch_inertia=2_022.0, axles=axles[:2])
+    front, rear = _heights(cg_heights)
+    tractor = Body(mass=2_612.0, pitch_inertia=2_022.0, axles=axles[:2], cg_height=front)
     trailer = Body(
         mass=26_113.0,
         pitch_inertia=33_153.0,
         axles=axles[2:],
-        hinge=Hinge(to=0, at=-2.215, own=2.338),
+        cg_height=rear,
+        hinge=Hinge(to=0, at=-2.215, own=2.338, height=hinge_height),
     )
     return Vehicle(bodies=[tractor, trailer])
 
@@ -285,6 +321,16 @@ def flm4(lorry: int) -> ForceTrain:
     return ForceTrain(loads=loads, spacings=spacings)
 
 
+def _heights(values: Sequence[float]) -> tuple[float, float]:
+    """Of tractor and semi-trailer."""
+    heights = numbers("cg_heights", values)
+    if len(heights) != 2:
+        raise ValueError(
+            f"cg_heights = {shown(values)}: give two, of the tractor and of the semi-trailer"
+        )
+    return heights[0], heights[1]
+
+
 def _within(key: str, value: float, low: float, high: float) -> float:
     """A spacing within the range of its code, which may have been rounded to the centimetre."""
     value = number(key, value)
@@ -315,11 +361,10 @@ class Preset:
     recalled: bool = False
 
     @property
-    def options(self) -> tuple[str, ...]:
-        """Names of what `make` accepts."""
-        return tuple(
-            p.name for p in signature(self.make).parameters.values() if p.kind is p.KEYWORD_ONLY
-        )
+    def options(self) -> dict[str, Any]:
+        """What `make` accepts, with the defaults."""
+        found = signature(self.make).parameters.values()
+        return {p.name: p.default for p in found if p.kind is p.KEYWORD_ONLY}
 
     def __call__(self, **options: Any) -> AnyVehicle:
         """The vehicle."""
@@ -334,7 +379,10 @@ PRESETS: Final[dict[str, Preset]] = {
     ),
     "half-car": Preset(half_car, "two-axle lorry", "OBrien and Keenahan (2015)", recalled=True),
     "articulated-5-axle": Preset(
-        articulated_5_axle, "tractor and semi-trailer", "D. Cantero and co-authors"
+        articulated_5_axle,
+        "tractor and semi-trailer",
+        "D. Cantero and co-authors",
+        recalled=True,
     ),
     "hs20-44": Preset(
         hs20_44,
