@@ -22,7 +22,7 @@ def remarks(run: Run, vehicle: int) -> list[str]:
         found.append(
             f"the brakes never come on: its front axle never comes to start = {drive.start:g} m"
         )
-    if run.vehicles[vehicle].stopped is not None and not _comes_to(run, vehicle, 0.0):
+    if run.stopped[vehicle] is not None and not _comes_to(run, vehicle, 0.0):
         found.append("stops before it reaches the bridge")
     return found
 

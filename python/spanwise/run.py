@@ -359,6 +359,7 @@ class Run(Responses):
         self.frequencies: Array = core.omega / (2.0 * np.pi)
         self.static_axle_loads: Array = core.static_loads
         self.final_speed: float = core.final_speeds[0]
+        self.stopped: tuple[float | None, ...] = tuple(core.stopped)
         self.lift_offs = tuple(LiftOff(axle + 1, *span) for axle, *span in core.lift_offs)
         self.steps: int = core.steps
 

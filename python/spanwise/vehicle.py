@@ -145,7 +145,7 @@ class Body:
     """
 
     mass: float
-    pitch_inertia: float = None  # type: ignore[assignment]
+    pitch_inertia: float | None = None
     axles: Sequence[Axle] = ()
     cg_height: float = 0.0
     hinge: Hinge | None = None
@@ -253,7 +253,7 @@ class Vehicle(Wheels):
         # What is None is refused with the numbers.
         return Body(
             mass=self.mass,  # type: ignore[arg-type]
-            pitch_inertia=self.pitch_inertia,  # type: ignore[arg-type]
+            pitch_inertia=self.pitch_inertia,
             axles=self.axles,
             cg_height=self.cg_height,
         )

@@ -349,7 +349,7 @@ def _values(vehicle: AnyVehicle) -> tuple[list[tuple[str, list[str]]], list[str]
     notes = []
     for b, body in enumerate(vehicle.parts, 1):
         note = f"Body {b if vehicle.bodies else ''} {kilo * body.mass:.2f} t".replace("  ", " ")
-        if f"body {b} pitch" in vehicle.coordinates:
+        if body.pitch_inertia is not None and f"body {b} pitch" in vehicle.coordinates:
             note += f", pitch inertia {kilo * body.pitch_inertia:.2f} t m²"
         notes.append(note)
     return rows, notes
