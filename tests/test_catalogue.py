@@ -137,6 +137,7 @@ def test_what_was_recalled_says_so() -> None:
         "articulated-5-axle",
         "hs20-44",
         "t44",
+        "cl-625",
         *lorries,
     }
     for make in (
@@ -145,6 +146,7 @@ def test_what_was_recalled_says_so() -> None:
         vehicles.articulated_5_axle,
         vehicles.hs20_44,
         vehicles.t44,
+        vehicles.cl_625,
     ):
         assert "recalled, not read at the source" in str(make.__doc__)
     assert "recalled, not read at the source" in str(vehicles.flm4.__doc__)

@@ -264,7 +264,7 @@ def t44(*, rear_spacing: float = 3.0) -> ForceTrain:
 
 
 def cl_625() -> ForceTrain:
-    """The CL-625 truck of Canada as forces, 625 kN.
+    """The CL-625 truck of Canada as forces, 625 kN (recalled, not read at the source).
 
     References
     ----------
@@ -392,7 +392,7 @@ PRESETS: Final[dict[str, Preset]] = {
     ),
     "hs20": Preset(hs20, "axle loads of a code", "AASHTO HS20"),
     "t44": Preset(t44, "axle loads of a code", "NAASRA and Austroads T44", recalled=True),
-    "cl-625": Preset(cl_625, "axle loads of a code", "CSA S6 CL-625"),
+    "cl-625": Preset(cl_625, "axle loads of a code", "CSA S6 CL-625", recalled=True),
     "flm3": Preset(flm3, "axle loads of a code", "EN 1991-2, FLM3"),
     **{
         f"flm4-{lorry}": Preset(

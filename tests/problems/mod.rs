@@ -11,12 +11,11 @@ use spanwise::along::Along;
 use spanwise::analysis::{Analysis, Outcome};
 use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Fixity, Layout, Stations, Support};
-use spanwise::course::Drive;
+use spanwise::course::{Drive, Passage};
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::influence::Quantity;
-use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
 use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
@@ -279,14 +278,8 @@ pub fn run(
     recovery: Recovery,
     sections: &[f64],
 ) -> Result<Run, Error> {
-    let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, modes)?;
-    let sections = (!sections.is_empty()).then_some(sections);
-    let analysis = Analysis::new(bridge, modes, damping, sections, recovery, &mut || true)?;
-    let outcome = analysis.cross(vehicle, settings, &mut || true)?;
-    let all = 0..analysis.rows.len();
-    let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
-    let flexibility = Flexibility::new(bridge, &analysis.sections)?;
-    Ok(Run { bridge: bridge.clone(), flexibility, analysis, outcome, responded })
+    let alone = [Passage::of(vehicle.clone())];
+    mechanics::run_all(bridge, &alone, settings, modes, damping, recovery, sections)
 }
 
 pub fn undamped() -> Damping {
