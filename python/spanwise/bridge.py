@@ -142,7 +142,9 @@ class Bridge:
         Mass per unit length [kg/m], likewise.
     stations_per_span : int or sequence of int, optional
         Equal shares into which each span is divided; the mass of each is lumped in its middle.
-        By default 10.
+        By default 10. No share reaches across a hinge, so between hinges they are nearly equal
+        only. Frequencies converge with the square of their number; overhangs and beams with hinges
+        need more of them than plain spans.
     stations : sequence of float, optional
         Positions of the masses [m], in place of `stations_per_span`. Each takes the mass up to
         half-way to its neighbours, but none from across a support.
