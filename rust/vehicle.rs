@@ -41,12 +41,6 @@ impl Axle {
             friction: Friction::NONE,
         }
     }
-
-    /// Stiffness between road and body while the suspension slides: both springs in series [N/m].
-    pub fn sliding_stiffness(&self) -> f64 {
-        let (t, s) = (self.tyre_stiffness, self.suspension_stiffness);
-        t * s / (t + s)
-    }
 }
 
 /// The two linear states of suspensions with friction.

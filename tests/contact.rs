@@ -5,7 +5,7 @@ mod problems;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use nalgebra::DVector;
-use problems::{POUND, kishan_vehicle};
+use problems::{POUND, in_series, kishan_vehicle};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use spanwise::assembly::Friction;
@@ -148,11 +148,11 @@ fn consistent(wheels: &[Wheel], u: &[f64], s: &[f64], doing: &[Doing], near: f64
     let n = wheels.len();
     let stiffness_and_constant = |k: usize| {
         let Wheel { axle, static_load, shortening } = wheels[k];
-        let slide = |limit: f64| axle.sliding_stiffness() * (limit - axle.friction.initial) / axle.suspension_stiffness;
+        let slide = |limit: f64| in_series(&axle) * (limit - axle.friction.initial) / axle.suspension_stiffness;
         match doing[k] {
             Doing::Sticks => (axle.tyre_stiffness, -axle.tyre_stiffness * shortening),
-            Doing::Shortens => (axle.sliding_stiffness(), slide(axle.friction.limit)),
-            Doing::Lengthens => (axle.sliding_stiffness(), slide(-axle.friction.limit)),
+            Doing::Shortens => (in_series(&axle), slide(axle.friction.limit)),
+            Doing::Lengthens => (in_series(&axle), slide(-axle.friction.limit)),
             Doing::Flies => (0.0, -static_load),
         }
     };

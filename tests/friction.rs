@@ -35,7 +35,7 @@ fn apart(a: &Run, b: &Run) -> f64 {
 fn no_friction_is_both_springs_in_series() {
     let sliding = crossed(&vehicle(|axle| axle.friction.limit = 0.0));
     let series = crossed(&vehicle(|axle| {
-        axle.tyre_stiffness = axle.sliding_stiffness();
+        axle.tyre_stiffness = in_series(axle);
         axle.friction.limit = f64::INFINITY;
     }));
     let apart = apart(&sliding, &series);

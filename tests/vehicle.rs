@@ -3,7 +3,7 @@
 mod problems;
 
 use nalgebra::{DMatrix, DVector};
-use problems::{kishan_vehicle, largest_difference, spread};
+use problems::{in_series, kishan_vehicle, largest_difference, spread};
 use spanwise::assembly::{Assembly, BuildUp, ContactLaw, Friction, STICK};
 use spanwise::vehicle::{Axle, Body, Coupling, Suspension, Vehicle};
 
@@ -100,7 +100,7 @@ fn full(bodies: &[Body]) -> Full {
             } else {
                 // Its coordinate is not used.
                 add(0, 1.0, &unit(next));
-                tyres.push((point(b, axle.position), axle.sliding_stiffness()));
+                tyres.push((point(b, axle.position), in_series(axle)));
             }
             next += 1;
         }

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, TypeAlias
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._checks import flag, number
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    from spanwise.plotting import VehiclePlot
+    from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -23,6 +30,18 @@ class Wheels:
 
         @property
         def _core(self) -> _core.Vehicle: ...
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its fields, so that it can go to another process."""
+        names = [each.name for each in fields(cast("DataclassInstance", self))]
+        return _rebuilt, (type(self), {name: getattr(self, name) for name in names})
+
+    @property
+    def plot(self) -> VehiclePlot:
+        """Figures of the vehicle or train; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import VehiclePlot
+
+        return VehiclePlot(cast("AnyVehicle", self))
 
     @property
     def total_mass(self) -> float:
@@ -72,3 +91,7 @@ class Wheels:
             alone. Without friction both are the same.
         """
         return self._core.frequencies(flag("locked", locked))
+
+
+def _rebuilt(kind: type[Wheels], arguments: dict[str, Any]) -> Wheels:
+    return kind(**arguments)

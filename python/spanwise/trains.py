@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import InitVar, dataclass, fields
+from dataclasses import InitVar, dataclass
 from itertools import accumulate
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from spanwise import _core
 from spanwise._checks import numbers, shown
 from spanwise._wheels import Wheels
 
 if TYPE_CHECKING:
-    from spanwise.plotting import VehiclePlot
+    pass
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,20 +44,6 @@ class ForceTrain(Wheels):
         object.__setattr__(self, "loads", tuple(loads))
         object.__setattr__(self, "positions", tuple(positions))
         object.__setattr__(self, "_core", _core.Vehicle.force_train(loads, positions))
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickled as its fields, so that it can go to another process."""
-        return _rebuilt, (
-            type(self),
-            {each.name: getattr(self, each.name) for each in fields(self)},
-        )
-
-    @property
-    def plot(self) -> VehiclePlot:
-        """Figures of the train; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import VehiclePlot
-
-        return VehiclePlot(self)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,24 +81,6 @@ class MovingMasses(Wheels):
         object.__setattr__(self, "masses", tuple(masses))
         object.__setattr__(self, "positions", tuple(positions))
         object.__setattr__(self, "_core", _core.Vehicle.moving_masses(masses, positions))
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickled as its fields, so that it can go to another process."""
-        return _rebuilt, (
-            type(self),
-            {each.name: getattr(self, each.name) for each in fields(self)},
-        )
-
-    @property
-    def plot(self) -> VehiclePlot:
-        """Figures of the train; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import VehiclePlot
-
-        return VehiclePlot(self)
-
-
-def _rebuilt(kind: type[Wheels], arguments: dict[str, Any]) -> Wheels:
-    return kind(**arguments)
 
 
 def _positions(

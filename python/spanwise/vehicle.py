@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from spanwise import _core
@@ -11,7 +11,7 @@ from spanwise._checks import count, number, shown
 from spanwise._wheels import Array, Wheels
 
 if TYPE_CHECKING:
-    from spanwise.plotting import VehiclePlot
+    pass
 
 T = TypeVar("T")
 
@@ -276,10 +276,6 @@ class Vehicle(Wheels):
         axles = f"{len(self.axles)} axle{'s' if len(self.axles) > 1 else ''}"
         return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{axles}, {self.wheelbase:.4g} m)"
 
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickled as its fields, so that it can go to another process."""
-        return _rebuilt, ({each.name: getattr(self, each.name) for each in fields(self)},)
-
     @property
     def parts(self) -> tuple[Body, ...]:
         """The bodies, or the one body there is."""
@@ -307,17 +303,6 @@ class Vehicle(Wheels):
             parts[b][i] = replace(parts[b][i], initial_friction=force)
         bodies = [replace(body, axles=axles) for body, axles in zip(self.parts, parts, strict=True)]
         return Vehicle(bodies=bodies)
-
-    @property
-    def plot(self) -> VehiclePlot:
-        """Figures of the vehicle; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import VehiclePlot
-
-        return VehiclePlot(self)
-
-
-def _rebuilt(arguments: dict[str, Any]) -> Vehicle:
-    return Vehicle(**arguments)
 
 
 def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:

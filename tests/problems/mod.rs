@@ -416,3 +416,9 @@ pub fn kishan_in_steps(vehicle: &Vehicle, drive: Drive, beta: f64, count: usize,
     let settings = Settings { drive: drive.clone(), beta, step: Some(step), ..kishan_settings() };
     run(&kishan_bridge(), vehicle, &settings, 3, &undamped(), Recovery::ForceSummation, sections).unwrap()
 }
+
+/// Tyre and suspension in series, the stiffness of an axle while it slides [N/m].
+pub fn in_series(axle: &Axle) -> f64 {
+    let (t, s) = (axle.tyre_stiffness, axle.suspension_stiffness);
+    t * s / (t + s)
+}
