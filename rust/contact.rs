@@ -70,7 +70,22 @@ struct Suspension<L> {
 }
 
 impl<L: Lane> Suspension<L> {
+    fn gather(each: &[&Suspension<f64>]) -> Self {
+        let of = |f: fn(&Suspension<f64>) -> f64| L::from_fn(|s| f(each[s]));
+        Suspension {
+            stiffness: of(|c| c.stiffness),
+            damping: of(|c| c.damping),
+            tyre: of(|c| c.tyre),
+            tyre_damping: of(|c| c.tyre_damping),
+            initial: of(|c| c.initial),
+            law: Law::gather(&each.iter().map(|c| &c.law).collect::<Vec<_>>()),
+            per_step: of(|c| c.per_step),
+            trapezoidal: each[0].trapezoidal,
+        }
+    }
+
     /// η in ṡ = σ s − η.
+    #[inline(always)]
     fn past(&self, before: &Stroke<L>) -> L {
         let past = self.per_step * before.shortening;
         if self.trapezoidal { past + before.rate } else { past }
@@ -138,7 +153,31 @@ impl<L: Lane> Contact<L> {
         }
     }
 
+    /// From those of each sample, all of one kind.
+    pub fn gather(each: &[&Contact<f64>]) -> Self {
+        let of = |f: fn(&Contact<f64>) -> f64| L::from_fn(|s| f(each[s]));
+        Contact {
+            static_load: of(|c| c.static_load),
+            floor: of(|c| c.floor),
+            stiffness: of(|c| c.stiffness),
+            constant: each[0].constant,
+            initial: of(|c| c.initial),
+            onset: of(|c| c.onset),
+            weights: Weights {
+                value: of(|c| c.weights.value),
+                rate: of(|c| c.weights.rate),
+                acceleration: of(|c| c.weights.acceleration),
+                plain: each.iter().all(|c| c.weights.plain),
+            },
+            suspension: each[0]
+                .suspension
+                .is_some()
+                .then(|| Suspension::gather(&each.iter().filter_map(|c| c.suspension.as_ref()).collect::<Vec<_>>())),
+        }
+    }
+
     /// The suspension in the static state.
+    #[inline(always)]
     pub fn at_rest(&self) -> Stroke<L> {
         Stroke::at_rest(self.initial)
     }
@@ -149,7 +188,7 @@ impl<L: Lane> Contact<L> {
     }
 
     /// Everything in p = law(u − S p) that holds for a whole step, for a suspension that was at `before` at its start.
-    #[inline]
+    #[inline(always)]
     pub fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
         let softened = L::splat(1.0) / (L::splat(1.0) + self.stiffness * compliance);
         let gain = self.stiffness * softened;
@@ -170,7 +209,7 @@ impl<L: Lane> Contact<L> {
     /// The increment p that solves p = law(u − S p).
     ///
     /// The law rises with δ and S ≥ 0, so the solution is unique.
-    #[inline]
+    #[inline(always)]
     pub fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
         let p = match &self.suspension {
             None => prepared.gain * u,
@@ -187,6 +226,7 @@ impl<L: Lane> Contact<L> {
     }
 
     /// The suspension at the end of a step that ended with increment p.
+    #[inline(always)]
     pub fn settle(&self, p: L, before: &Stroke<L>) -> Stroke<L> {
         let Some(suspension) = &self.suspension else { return *before };
         let past = suspension.past(before);
@@ -226,11 +266,22 @@ impl<L: Lane> Rubbing<L> {
     }
 
     /// In the static state.
+    #[inline(always)]
     pub fn at_rest(&self) -> Stroke<L> {
         Stroke::at_rest(self.initial)
     }
 
+    /// From those of each sample, all of one kind.
+    pub fn gather(each: &[&Rubbing<f64>]) -> Self {
+        Rubbing {
+            initial: L::from_fn(|s| each[s].initial),
+            law: Law::gather(&each.iter().map(|r| &r.law).collect::<Vec<_>>()),
+            moves: each[0].moves,
+        }
+    }
+
     /// Force increment for shortening u − S (f − f₀), and the element then.
+    #[inline(always)]
     fn solve(&self, u: L, compliance: L, before: &Stroke<L>) -> (L, Stroke<L>) {
         if !self.moves {
             return (before.friction - self.initial, *before);
@@ -252,6 +303,7 @@ pub struct Elements<L> {
 
 impl<L: Lane> Elements<L> {
     /// Number of unknown forces.
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.contacts.len() + self.rubbing.len()
     }
@@ -268,6 +320,7 @@ impl<L: Lane> Elements<L> {
     /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
     /// and lift-off alike. (Tyre damping adds a part to S that is not symmetric, of the order of the step.) A lane that
     /// has settled is frozen, hence no sample depends on its neighbours. False if one did not.
+    #[inline(always)]
     pub fn solve(
         &self,
         u: &[L],
@@ -314,6 +367,7 @@ impl<L: Lane> Elements<L> {
     }
 
     /// Commits suspensions and friction elements to the end of a step that ended with the forces p.
+    #[inline(always)]
     pub fn settle(&self, u: &[L], compliance: &[L], p: &[L], strokes: &mut [Stroke<L>]) {
         let n = self.len();
         for (k, contact) in self.contacts.iter().enumerate() {

@@ -68,10 +68,25 @@ impl<L: Lane> Law<L> {
         }
     }
 
+    /// From those of each sample, all of one kind.
+    pub fn gather(each: &[&Law<f64>]) -> Self {
+        let numbers = |law: &Law<f64>| match *law {
+            Law::Rigid { limit } => [limit, 0.0, 0.0],
+            Law::Elastic { limit, give } => [limit, give, 0.0],
+            Law::Leaf { limit, decay, lag } => [limit, decay, lag],
+        };
+        let [limit, second, third] = [0, 1, 2].map(|k| L::from_fn(|s| numbers(each[s])[k]));
+        match each[0] {
+            Law::Rigid { .. } => Law::Rigid { limit },
+            Law::Elastic { .. } => Law::Elastic { limit, give: second },
+            Law::Leaf { .. } => Law::Leaf { limit, decay: second, lag: third },
+        }
+    }
+
     /// Shortening and friction where the law, coming from `before`, meets the falling line f = a − b s.
     ///
     /// The law and its spring rise with s, and b is at least the spring's stiffness, so there is one such point.
-    #[inline]
+    #[inline(always)]
     pub fn meet(&self, a: L, b: L, before: &Stroke<L>) -> (L, L) {
         let s = before.shortening;
         match *self {
@@ -96,6 +111,7 @@ impl<L: Lane> Law<L> {
     }
 }
 
+#[inline(always)]
 fn leaf<L: Lane>(a: L, b: L, before: &Stroke<L>, limit: L, decay: L, lag: L) -> (L, L) {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     // Everything in the direction in which it moves: x ≥ 0 from here, and the force there on tends to `far`.

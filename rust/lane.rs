@@ -1,5 +1,7 @@
 //! What the time step computes with: one `f64`, or several samples side by side.
 
+pub mod wide;
+
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// One number per sample. All operations are exact IEEE ones, element by element, so that a sample's bits depend
@@ -10,8 +12,17 @@ pub trait Lane:
     /// One truth value per sample.
     type Mask: Copy + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
+    /// Number of samples.
+    const SAMPLES: usize;
+
     /// The same number for every sample.
     fn splat(value: f64) -> Self;
+
+    /// One number for each sample.
+    fn from_fn(value: impl Fn(usize) -> f64) -> Self;
+
+    /// The number of one sample.
+    fn get(&self, sample: usize) -> f64;
 
     /// self < other.
     fn less(self, other: Self) -> Self::Mask;
@@ -26,16 +37,19 @@ pub trait Lane:
     fn any(mask: Self::Mask) -> bool;
 
     /// The mask that holds for no sample.
+    #[inline(always)]
     fn never() -> Self::Mask {
         Self::splat(0.0).less(Self::splat(0.0))
     }
 
     /// Larger of two by compare-and-select: `other` unless self is greater.
+    #[inline(always)]
     fn larger(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
 
     /// Smaller of two by compare-and-select: `other` unless self is less.
+    #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
@@ -44,6 +58,7 @@ pub trait Lane:
     fn exp(self) -> Self;
 
     /// Magnitude.
+    #[inline(always)]
     fn magnitude(self) -> Self {
         Self::select(self.less(Self::splat(0.0)), -self, self)
     }
@@ -52,8 +67,18 @@ pub trait Lane:
 impl Lane for f64 {
     type Mask = bool;
 
+    const SAMPLES: usize = 1;
+
     fn splat(value: f64) -> Self {
         value
+    }
+
+    fn from_fn(value: impl Fn(usize) -> f64) -> Self {
+        value(0)
+    }
+
+    fn get(&self, _sample: usize) -> f64 {
+        *self
     }
 
     fn less(self, other: Self) -> bool {

@@ -57,5 +57,7 @@ pub mod survey;
 
 pub mod analysis;
 
+pub mod ensemble;
+
 #[cfg(feature = "python")]
 mod python;

@@ -27,10 +27,10 @@ pub enum ModalSolve<L> {
     },
     /// All modes together.
     Full {
-        /// D.
-        damping: Mat<f64>,
-        /// The inverse.
-        inverse: Mat<f64>,
+        /// D by rows.
+        damping: Vec<L>,
+        /// The inverse by rows.
+        inverse: Vec<L>,
     },
 }
 
@@ -51,22 +51,42 @@ impl<L: Lane> ModalSolve<L> {
                 let matrix = Mat::from_fn(n, n, |i, j| {
                     0.5 * h * d[(i, j)] + if i == j { 1.0 + beta * h * h * omega[i].powi(2) } else { 0.0 }
                 });
-                ModalSolve::Full { damping: d.clone(), inverse: matrix.partial_piv_lu().inverse() }
+                let inverse = matrix.partial_piv_lu().inverse();
+                let by_rows = |m: &Mat<f64>| (0..n * n).map(|ij| L::splat(m[(ij / n, ij % n)])).collect();
+                ModalSolve::Full { damping: by_rows(d), inverse: by_rows(&inverse) }
             }
         }
     }
 
+    /// From those of each sample.
+    pub fn gather(each: &[&ModalSolve<f64>]) -> Self {
+        let parts: Vec<[&Vec<f64>; 2]> = each
+            .iter()
+            .map(|solve| match solve {
+                ModalSolve::Diagonal { damping, inverse } | ModalSolve::Full { damping, inverse } => [damping, inverse],
+            })
+            .collect();
+        let of = |part: usize| (0..parts[0][part].len()).map(|i| L::from_fn(|s| parts[s][part][i])).collect();
+        match each[0] {
+            ModalSolve::Diagonal { .. } => ModalSolve::Diagonal { damping: of(0), inverse: of(1) },
+            ModalSolve::Full { .. } => ModalSolve::Full { damping: of(0), inverse: of(1) },
+        }
+    }
+
     /// Damping force on a mode.
+    #[inline(always)]
     pub fn damping_force(&self, mode: usize, predicted: &[Coordinate<L>]) -> L {
         match self {
             ModalSolve::Diagonal { damping, .. } => damping[mode] * predicted[mode].v,
             ModalSolve::Full { damping, .. } => {
-                predicted.iter().enumerate().fold(L::splat(0.0), |sum, (j, c)| sum + L::splat(damping[(mode, j)]) * c.v)
+                let row = &damping[mode * predicted.len()..];
+                predicted.iter().zip(row).fold(L::splat(0.0), |sum, (c, d)| sum + *d * c.v)
             }
         }
     }
 
     /// Accelerations under modal forces.
+    #[inline(always)]
     pub fn apply(&self, forces: &[L], accelerations: &mut [L]) {
         match self {
             ModalSolve::Diagonal { inverse, .. } => {
@@ -75,11 +95,8 @@ impl<L: Lane> ModalSolve<L> {
                 }
             }
             ModalSolve::Full { inverse, .. } => {
-                for (i, a) in accelerations.iter_mut().enumerate() {
-                    *a = forces
-                        .iter()
-                        .enumerate()
-                        .fold(L::splat(0.0), |sum, (j, f)| sum + L::splat(inverse[(i, j)]) * *f);
+                for (a, row) in accelerations.iter_mut().zip(inverse.chunks_exact(forces.len())) {
+                    *a = forces.iter().zip(row).fold(L::splat(0.0), |sum, (f, e)| sum + *e * *f);
                 }
             }
         }

@@ -15,6 +15,7 @@ pub struct Coordinate<L> {
 
 impl<L: Lane> Coordinate<L> {
     /// At rest at zero.
+    #[inline(always)]
     pub fn rest() -> Self {
         let zero = L::splat(0.0);
         Coordinate { x: zero, v: zero, a: zero }
@@ -45,12 +46,20 @@ impl<L: Lane> Newmark<L> {
         }
     }
 
+    /// From those of each sample.
+    pub fn gather(each: &[&Newmark<f64>]) -> Self {
+        let of = |f: fn(&Newmark<f64>) -> f64| L::from_fn(|i| f(each[i]));
+        Newmark { h: of(|n| n.h), half_h: of(|n| n.half_h), old: of(|n| n.old), new: of(|n| n.new) }
+    }
+
     /// The coordinate at the end of the step if its acceleration there were zero; `a` is left as it was.
+    #[inline(always)]
     pub fn predict(&self, c: Coordinate<L>) -> Coordinate<L> {
         Coordinate { x: c.x + self.h * c.v + self.old * c.a, v: c.v + self.half_h * c.a, a: c.a }
     }
 
     /// The coordinate at the end of the step, with acceleration `a` there.
+    #[inline(always)]
     pub fn correct(&self, predicted: Coordinate<L>, a: L) -> Coordinate<L> {
         Coordinate { x: predicted.x + self.new * a, v: predicted.v + self.half_h * a, a }
     }

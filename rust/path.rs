@@ -55,6 +55,28 @@ impl ModeShapes {
         })
     }
 
+    /// Number of modes.
+    pub fn modes(&self) -> usize {
+        self.modes
+    }
+
+    /// Adds the modes' values at x, each followed by its first two derivatives if three kinds are asked for.
+    pub fn extend_at(&self, x: f64, kinds: usize, values: &mut Vec<f64>) {
+        match self.mesh.panel_at(x) {
+            Some(panel) => {
+                let fraction = self.mesh.fraction(panel, x);
+                for mode in 0..self.modes {
+                    if kinds == 3 {
+                        values.extend(self.rates(panel, fraction, mode));
+                    } else {
+                        values.push(self.value(panel, fraction, mode));
+                    }
+                }
+            }
+            None => values.extend(std::iter::repeat_n(0.0, self.modes * kinds)),
+        }
+    }
+
     fn value(&self, panel: usize, fraction: f64, mode: usize) -> f64 {
         let [c0, c1, c2, c3] = self.cubics[panel * self.modes + mode];
         c0 + fraction * (c1 + fraction * (c2 + fraction * c3))
@@ -70,6 +92,16 @@ impl ModeShapes {
             (2.0 * c2 + fraction * 6.0 * c3) / width.powi(2),
         ]
     }
+}
+
+/// How far a road has faded in after a way t, from 0 to 1, of its ramp [m], with two derivatives along the way.
+pub fn fade(t: f64, ramp: f64) -> [f64; 3] {
+    // 6t⁵ − 15t⁴ + 10t³: no jump in value, slope or curvature at either end.
+    [
+        t * t * t * (10.0 + t * (6.0 * t - 15.0)),
+        30.0 * t * t * (1.0 - t).powi(2) / ramp,
+        60.0 * t * (1.0 - t) * (1.0 - 2.0 * t) / ramp.powi(2),
+    ]
 }
 
 /// A road on the way of one vehicle, its unevenness fading in from where the vehicle starts.
@@ -88,7 +120,8 @@ pub struct Pavement<'a> {
 }
 
 impl Pavement<'_> {
-    fn at(&self, x: f64) -> Surface<f64> {
+    /// The surface at x [m].
+    pub fn at(&self, x: f64) -> Surface<f64> {
         let way = self.direction * (x - self.start);
         if self.road.is_smooth() || way <= 0.0 && self.ramp > 0.0 {
             return Surface::LEVEL;
@@ -101,11 +134,8 @@ impl Pavement<'_> {
         if self.ramp == 0.0 || way >= self.ramp {
             return Surface { elevation: point.elevation, slope: point.slope, curvature: point.curvature };
         }
-        // 6t⁵ − 15t⁴ + 10t³: no jump in value, slope or curvature at either end.
-        let t = way / self.ramp;
-        let fade = t * t * t * (10.0 + t * (6.0 * t - 15.0));
-        let fade_1 = self.direction * 30.0 * t * t * (1.0 - t).powi(2) / self.ramp;
-        let fade_2 = 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t) / self.ramp.powi(2);
+        let [fade, fade_1, fade_2] = fade(way / self.ramp, self.ramp);
+        let fade_1 = self.direction * fade_1;
         Surface {
             elevation: fade * point.elevation,
             slope: fade * point.slope + fade_1 * point.elevation,
@@ -165,19 +195,7 @@ impl<'a> Prescribed<'a> {
             for contact in 0..contacts {
                 let motion = motion(step, contact);
                 motions.push(motion);
-                match shapes.mesh.panel_at(motion.x) {
-                    Some(panel) => {
-                        let fraction = shapes.mesh.fraction(panel, motion.x);
-                        for mode in 0..shapes.modes {
-                            if slopes {
-                                table.extend(shapes.rates(panel, fraction, mode));
-                            } else {
-                                table.push(shapes.value(panel, fraction, mode));
-                            }
-                        }
-                    }
-                    None => table.extend(std::iter::repeat_n(0.0, shapes.modes * kinds)),
-                }
+                shapes.extend_at(motion.x, kinds, &mut table);
             }
         }
         let surfaces = vec![Surface::LEVEL; contacts];

@@ -263,6 +263,28 @@ impl Rows {
         if self.recovery == Recovery::Superposition { 0.0 } else { 1.0 }
     }
 
+    /// Number of coordinates that the factors multiply: A, or Ȧ and Ä.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Whether the coordinates are Ȧ and Ä, not A.
+    pub fn by_rates(&self) -> bool {
+        self.recovery == Recovery::ForceSummationByRates
+    }
+
+    /// Factor of a coordinate in a response.
+    pub fn factor(&self, response: usize, coordinate: usize) -> f64 {
+        self.factors[response / WIDTH * self.width + coordinate][response % WIDTH]
+    }
+
+    /// Influence of an axle load on a response.
+    pub fn influence_of(&self, response: usize, (panel, f): (usize, f64)) -> f64 {
+        let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + response / WIDTH];
+        let i = response % WIDTH;
+        c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))
+    }
+
     /// Panel and fraction of a position [m].
     pub fn place(&self, x: f64) -> Place {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))

@@ -81,7 +81,39 @@ impl<L: Lane> Rig<L> {
         }
     }
 
+    /// From those of each sample.
+    pub fn gather(each: &[&Rig<f64>]) -> Self {
+        let first = each[0];
+        let of = |part: &dyn Fn(&Rig<f64>) -> &Vec<f64>| -> Vec<L> {
+            (0..part(first).len()).map(|i| L::from_fn(|s| part(each[s])[i])).collect()
+        };
+        // What one sample has, all have: they differ in numbers only.
+        let some = |part: &dyn Fn(&Rig<f64>) -> Option<&Vec<f64>>| -> Option<Vec<L>> {
+            let parts = each.iter().map(|rig| part(rig)).collect::<Option<Vec<&Vec<f64>>>>()?;
+            Some((0..parts[0].len()).map(|i| L::from_fn(|s| parts[s][i])).collect())
+        };
+        let damping = some(&|rig| rig.linear.as_ref().map(|l| &l[0]));
+        let stiffness = some(&|rig| rig.linear.as_ref().map(|l| &l[1]));
+        Rig {
+            size: first.size,
+            contacts: first.contacts,
+            elements: first.elements,
+            total_mass: L::from_fn(|s| each[s].total_mass),
+            linear: damping.zip(stiffness).map(|(c, k)| [c, k]),
+            inverse: of(&|rig| &rig.inverse),
+            rows: of(&|rig| &rig.rows),
+            receptance: of(&|rig| &rig.receptance),
+            coupling: of(&|rig| &rig.coupling),
+            surge_rows: some(&|rig| rig.surge_rows.as_ref()),
+            surge_receptance: of(&|rig| &rig.surge_receptance),
+            predicted: vec![Coordinate::rest(); first.size],
+            free: vec![L::splat(0.0); first.size],
+            resisting: vec![L::splat(0.0); first.size],
+        }
+    }
+
     /// Begins a step.
+    #[inline(always)]
     pub fn predict(&mut self, newmark: &Newmark<L>, state: &[Coordinate<L>]) {
         for (predicted, c) in self.predicted.iter_mut().zip(state) {
             *predicted = newmark.predict(*c);
@@ -99,6 +131,7 @@ impl<L: Lane> Rig<L> {
     }
 
     /// Works out the accelerations without element forces, under forces along the road at the contacts [N].
+    #[inline(always)]
     pub fn surge(&mut self, along: &[L]) {
         let zero = L::splat(0.0);
         match &self.linear {
@@ -119,6 +152,7 @@ impl<L: Lane> Rig<L> {
     }
 
     /// Shortening of an element without element forces, and its rate.
+    #[inline(always)]
     pub fn shortening(&self, newmark: &Newmark<L>, element: usize) -> [L; 2] {
         let row = &self.rows[element * self.size..(element + 1) * self.size];
         let mut sums = [L::splat(0.0); 2];
@@ -131,11 +165,13 @@ impl<L: Lane> Rig<L> {
     }
 
     /// Accelerations of element i under unit forces of all elements.
+    #[inline(always)]
     pub fn coupling(&self, i: usize) -> &[L] {
         &self.coupling[i * self.elements..(i + 1) * self.elements]
     }
 
     /// Ends a step under the element forces: contacts', then friction's.
+    #[inline(always)]
     pub fn correct(&self, newmark: &Newmark<L>, contacts: &[L], frictions: &[L], state: &mut [Coordinate<L>]) {
         for (i, (state, predicted)) in state.iter_mut().zip(&self.predicted).enumerate() {
             let receptances = self.receptance.chunks_exact(self.size);
@@ -146,6 +182,7 @@ impl<L: Lane> Rig<L> {
     }
 
     /// How far a contact is along the road beyond its place in the static state [m], and the two derivatives of that.
+    #[inline(always)]
     pub fn along(&self, contact: usize, state: &[Coordinate<L>]) -> Coordinate<L> {
         let mut sum = Coordinate::rest();
         if let Some(rows) = &self.surge_rows {
@@ -157,6 +194,7 @@ impl<L: Lane> Rig<L> {
     }
 
     /// The coordinates at the end of the step if their accelerations stayed as they were in `state`.
+    #[inline(always)]
     pub fn guess(&self, newmark: &Newmark<L>, state: &[Coordinate<L>], guess: &mut [Coordinate<L>]) {
         for ((guess, predicted), before) in guess.iter_mut().zip(&self.predicted).zip(state) {
             *guess = newmark.correct(*predicted, before.a);

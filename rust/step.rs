@@ -136,6 +136,7 @@ struct Unit<L> {
 
 impl<L: Lane> Unit<L> {
     /// Global number of an element of this vehicle.
+    #[inline(always)]
     fn element(&self, own: usize) -> usize {
         if own < self.contacts.len() {
             self.contacts.start + own
@@ -195,6 +196,7 @@ pub struct Stepper<L> {
     forces: Vec<L>,
 }
 
+#[inline(always)]
 fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
     a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
 }
@@ -257,6 +259,7 @@ impl<L: Lane> Stepper<L> {
     ///
     /// An axle that stands on the bridge at the start loads it suddenly, as does one on a road that is not level there;
     /// the first accelerations say so. To find them this stepper must have been made for steps of zero length.
+    #[inline(always)]
     pub fn start(&mut self, speeds: &[L], geometry: &impl Geometry<L>) -> Result<State<L>, Unsettled> {
         let zero = L::splat(0.0);
         let contacts = self.elements.contacts.iter().map(|c| c.at_rest());
@@ -291,6 +294,61 @@ impl<L: Lane> Stepper<L> {
         Ok(state)
     }
 
+    /// From one stepper for each sample, of the same vehicles, modes and scheme but for their numbers.
+    pub fn gather(each: &[Stepper<f64>]) -> Self {
+        let first = &each[0];
+        let numbers = |f: &dyn Fn(&Stepper<f64>) -> f64| L::from_fn(|i| f(&each[i]));
+        let zeros = |count: usize| vec![L::splat(0.0); count];
+        let units = first.units.iter().enumerate().map(|(u, unit)| {
+            let rigs: Vec<&Rig<f64>> = each.iter().map(|s| &s.units[u].rig).collect();
+            let vector = |of: &dyn Fn(&Unit<f64>) -> &Vec<f64>| -> Vec<L> {
+                (0..of(unit).len()).map(|i| L::from_fn(|s| of(&each[s].units[u])[i])).collect()
+            };
+            Unit {
+                rig: Rig::gather(&rigs),
+                propulsion: unit.propulsion,
+                direction: unit.direction,
+                contacts: unit.contacts.clone(),
+                rubbing: unit.rubbing.clone(),
+                coordinates: unit.coordinates.clone(),
+                positions: vector(&|unit| &unit.positions),
+                shares: vector(&|unit| &unit.shares),
+                brakes: None,
+            }
+        });
+        let contacts = (0..first.elements.contacts.len())
+            .map(|k| Contact::gather(&each.iter().map(|s| &s.elements.contacts[k]).collect::<Vec<_>>()));
+        let rubbing = (0..first.elements.rubbing.len())
+            .map(|k| Rubbing::gather(&each.iter().map(|s| &s.elements.rubbing[k]).collect::<Vec<_>>()));
+        let modes = first.omega2.len();
+        Stepper {
+            newmark: Newmark::gather(&each.iter().map(|s| &s.newmark).collect::<Vec<_>>()),
+            omega2: (0..modes).map(|m| numbers(&|s| s.omega2[m])).collect(),
+            modal: ModalSolve::gather(&each.iter().map(|s| &s.modal).collect::<Vec<_>>()),
+            units: units.collect(),
+            elements: Elements { contacts: contacts.collect(), rubbing: rubbing.collect() },
+            predicted: vec![Coordinate::rest(); modes],
+            travel: vec![Coordinate::rest(); first.travel.len()],
+            guess: vec![Coordinate::rest(); first.guess.len()],
+            surge_settled: numbers(&|s| s.surge_settled),
+            along: zeros(first.along.len()),
+            free: zeros(modes),
+            loaded: zeros(modes),
+            shapes: zeros(first.shapes.len()),
+            senses: zeros(first.senses.len()),
+            receptance: zeros(first.receptance.len()),
+            compliance: zeros(first.compliance.len()),
+            offset: zeros(first.offset.len()),
+            prepared: Vec::with_capacity(first.elements.contacts.len()),
+            forces: zeros(modes),
+        }
+    }
+
+    /// Static loads of all contacts [N].
+    pub fn static_loads(&self) -> Vec<L> {
+        self.elements.contacts.iter().map(|c| c.static_load).collect()
+    }
+
     /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, and it rocks about them.
     pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
         self.units[vehicle].rig = standing;
@@ -303,6 +361,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Advances the state by one step.
+    #[inline(always)]
     pub fn advance(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
         self.predict(state);
         geometry.advance();
@@ -362,6 +421,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Everything at the end of the step if accelerations there were zero, and modal accelerations without loads.
+    #[inline(always)]
     fn predict(&mut self, state: &State<L>) {
         for unit in &mut self.units {
             unit.rig.predict(&self.newmark, &state.coordinates[unit.coordinates.clone()]);
@@ -377,6 +437,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Forces along the road as they go on from the last two steps, where vehicles roll.
+    #[inline(always)]
     fn guess_along(&self, state: &mut State<L>) {
         for unit in self.units.iter().filter(|unit| unit.propulsion == Propulsion::Rolling) {
             for contact in unit.contacts.clone() {
@@ -388,6 +449,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Forces along the road to begin with: those that prescribed motion takes, or those of the last step.
+    #[inline(always)]
     fn push_along(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>) {
         for unit in &mut self.units {
             if unit.propulsion == Propulsion::Prescribed {
@@ -400,6 +462,7 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
+    #[inline(always)]
     fn react(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>, frozen: L::Mask) -> Result<(), Unsettled> {
         self.couple(geometry);
         if !self.elements.solve(
@@ -422,11 +485,13 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// Commits the suspensions to the end of the step; what moves as prescribed goes on.
+    #[inline(always)]
     fn settle(&self, state: &mut State<L>) {
         self.elements.settle(&self.offset, &self.compliance, &state.increments, &mut state.strokes);
     }
 
     /// What the elements follow without force increments, `offset`, and what the increments take off it, `compliance`.
+    #[inline(always)]
     fn couple(&mut self, geometry: &impl Geometry<L>) {
         let (modes, n) = (self.omega2.len(), self.elements.len());
         let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
@@ -508,6 +573,7 @@ impl<L: Lane> Stepper<L> {
         }
     }
 
+    #[inline(always)]
     fn move_bridge(&mut self, state: &mut State<L>) {
         let modes = self.omega2.len();
         self.forces.copy_from_slice(&self.loaded);
@@ -523,6 +589,7 @@ impl<L: Lane> Stepper<L> {
 }
 
 /// Puts the contacts of a freely rolling vehicle where it has them: lanes in which one had still to move.
+#[inline(always)]
 fn place<L: Lane>(
     unit: &Unit<L>,
     travel: Coordinate<L>,
@@ -542,6 +609,7 @@ fn place<L: Lane>(
 
 /// Force along the road at a contact of a freely rolling vehicle, in the direction of travel: what pushes it down the
 /// slope of bridge and road, less its brakes.
+#[inline(always)]
 fn along<L: Lane>(
     unit: &Unit<L>,
     own: usize,

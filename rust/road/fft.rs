@@ -34,6 +34,7 @@ impl InverseFft {
     /// Takes real and imaginary parts, n/2 + 1 each, and leaves the points with even j in the first n/2 of the real and
     /// those with odd j in the first n/2 of the imaginary parts. What stands in the imaginary parts of X_0 and X_n/2 is
     /// ignored.
+    #[inline(always)]
     pub fn real<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
         let half = self.twiddles.len();
         assert!(re.len() == half + 1 && im.len() == half + 1, "n/2 + 1 components are needed");
@@ -43,6 +44,7 @@ impl InverseFft {
 
     /// Even and odd points are two real transforms of half the length, and thus one complex one: Z = E + iO with
     /// E_m = X_m + X_(m+n/2) and O_m = (X_m − X_(m+n/2)) e^(2πi m/n).
+    #[inline(always)]
     fn fold<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
         let half = self.twiddles.len();
         (re[0], im[0]) = (re[0] + re[half], re[0] - re[half]);
@@ -61,6 +63,7 @@ impl InverseFft {
     }
 
     /// In place: decimation in time after reversing the bits of the index.
+    #[inline(always)]
     fn complex<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
         let n = re.len();
         let shift = usize::BITS - n.trailing_zeros();

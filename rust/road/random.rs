@@ -20,6 +20,7 @@ use super::spectrum::Spectrum;
 use super::spline::Spline;
 use super::turn::{sin_cos, sinc};
 use crate::error::{Error, positive};
+use crate::lane::Lane;
 
 /// Shortest default period [m].
 const PERIOD: f64 = 1000.0;
@@ -83,6 +84,33 @@ impl Synthesis {
         };
         let amplitudes = (first..=last).map(amplitude).collect();
         Ok(Synthesis { spectrum, patch, period, first, amplitudes, fft: InverseFft::new(points) })
+    }
+
+    /// Period [m].
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Number of grid points in a period.
+    pub fn points(&self) -> usize {
+        self.fft.points()
+    }
+
+    /// Spline coefficients of the roads of several samples, one in each lane.
+    pub fn coefficients<L: Lane>(&self, seed: u64, sample: impl Fn(usize) -> u64) -> Vec<L> {
+        let half = self.fft.points() / 2;
+        let components: Vec<[Vec<f64>; 2]> = (0..L::SAMPLES)
+            .map(|lane| {
+                let mut parts = [vec![0.0; half + 1], vec![0.0; half + 1]];
+                let [re, im] = &mut parts;
+                self.components(seed, sample(lane), re, im);
+                parts
+            })
+            .collect();
+        let gathered = |part: usize| (0..=half).map(|m| L::from_fn(|lane| components[lane][part][m])).collect();
+        let (mut re, mut im): (Vec<L>, Vec<L>) = (gathered(0), gathered(1));
+        self.fft.real(&mut re, &mut im);
+        re[..half].iter().zip(&im[..half]).flat_map(|(even, odd)| [*even, *odd]).collect()
     }
 
     /// The road of a seed and a sample number: a function of these alone.
