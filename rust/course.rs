@@ -176,7 +176,17 @@ impl<'a> Course<'a> {
     /// An own axle at time t, along the bridge.
     pub fn axle(&self, own: usize, t: f64, length: f64) -> Coordinate<f64> {
         let Coordinate { x, v, a } = self.motion.at(t - self.entry);
-        let x = x - self.behind[own];
+        self.along(Coordinate { x: x - self.behind[own], v, a }, length)
+    }
+
+    /// An own axle at the speed at the start, along the bridge; the front axle is `front` [m] from the end at which it
+    /// enters.
+    pub fn steady_axle(&self, own: usize, front: f64, length: f64) -> Coordinate<f64> {
+        self.along(Coordinate { x: front - self.behind[own], v: self.speed, a: 0.0 }, length)
+    }
+
+    /// Seen from the left end of the bridge.
+    fn along(&self, Coordinate { x, v, a }: Coordinate<f64>, length: f64) -> Coordinate<f64> {
         match self.direction {
             Direction::Right => Coordinate { x, v, a },
             Direction::Left => Coordinate { x: length - x, v: -v, a: -a },
@@ -187,6 +197,16 @@ impl<'a> Course<'a> {
     pub fn centre(&self, t: f64) -> Coordinate<f64> {
         let Coordinate { x, v, a } = self.motion.at(t - self.entry);
         Coordinate { x: x - self.vehicle.assembly().contacts[0].position, v, a }
+    }
+
+    /// Way of its front axle from the start of the approach until its last axle has left [m].
+    pub fn path(&self, settings: &Settings, length: f64) -> f64 {
+        settings.approach + length + self.wheelbase()
+    }
+
+    /// Whether it keeps its speed from time zero on.
+    pub fn is_steady(&self) -> bool {
+        !self.rolls && self.entry == 0.0 && self.motion.is_steady()
     }
 
     /// When it has left the bridge, or stands for good; of one that rolls, an estimate.
@@ -235,11 +255,11 @@ impl<'a> Course<'a> {
 
     /// The road on its way, if that is uneven.
     pub fn pavement(&self, settings: &Settings, length: f64) -> Option<Pavement<'a>> {
-        let along = |way: f64| if self.direction == Direction::Right { way } else { length - way };
+        let from_left = |way: f64| if self.direction == Direction::Right { way } else { length - way };
         (!self.road.is_smooth()).then(|| Pavement {
             road: self.road,
-            start: along(-settings.approach),
-            end: along(length + self.wheelbase()),
+            start: from_left(-settings.approach),
+            end: from_left(length + self.wheelbase()),
             ramp: settings.ramp,
             direction: self.direction.sign(),
         })

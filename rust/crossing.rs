@@ -112,7 +112,10 @@ pub fn cross_all(
     let own = |axle: usize| (&courses[owner[axle]], axle - courses[owner[axle]].axles.start);
     let motion = |step: usize, axle: usize| {
         let (course, own) = own(axle);
-        course.axle(own, step as f64 * steps.h, length)
+        match steps.advance {
+            Some(advance) => course.steady_axle(own, advance * step as f64 - settings.approach, length),
+            None => course.axle(own, step as f64 * steps.h, length),
+        }
     };
     // Whether forces follow rates, and with them the slopes of the modes.
     let rates = courses.iter().flat_map(|c| &c.vehicle.assembly().contacts).any(|contact| !contact.law.is_plain());

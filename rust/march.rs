@@ -19,6 +19,8 @@ pub struct March<'a> {
     settings: &'a Settings,
     length: f64,
     h: f64,
+    /// Step at whose end a vehicle alone at constant speed has left.
+    leaves: Option<usize>,
     stepper: Stepper<f64>,
     starter: Stepper<f64>,
     /// After so many steps a vehicle that rolls freely counts as stopped.
@@ -68,6 +70,7 @@ impl<'a> March<'a> {
             settings,
             length: model.shapes.mesh().length(),
             h: steps.h,
+            leaves: steps.advance.map(|_| steps.count),
             stepper: Stepper::new(&model.omega, &model.damping, &moving, &scheme),
             most_steps: (20 * (steps.count + 1000)).min(2 * MAX_STEPS) + (settings.tail / steps.h) as usize,
             starter: Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h: 0.0, ..scheme }),
@@ -117,7 +120,11 @@ impl<'a> March<'a> {
             self.stand(time, &mut state.travel, geometry, stop)?;
             self.check_apart(time, geometry)?;
             self.record(time, &state, geometry);
-            self.note_ends(time);
+            match self.leaves {
+                Some(leaves) if n == leaves => self.ended[0] = Some(time),
+                Some(_) => {}
+                None => self.note_ends(time),
+            }
             if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
                 let end = end + self.settings.tail;
                 if time >= end - 1e-9 * self.h {

@@ -28,6 +28,11 @@ impl Motion {
         Motion { pieces: vec![(0.0, Coordinate { x, v: speed, a: 0.0 })] }
     }
 
+    /// Whether the speed never changes, and is not zero.
+    pub fn is_steady(&self) -> bool {
+        matches!(self.pieces[..], [(_, c)] if c.a == 0.0 && c.v > 0.0)
+    }
+
     /// With constant acceleration [m/s²] from time zero on; one that slows down stands in the end.
     pub fn accelerated(x: f64, speed: f64, acceleration: f64) -> Result<Self, Error> {
         reasonable("acceleration", finite("acceleration", acceleration)?, "m/s2")?;

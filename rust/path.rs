@@ -119,28 +119,68 @@ pub struct Pavement<'a> {
     pub direction: f64,
 }
 
+/// What of a road counts at a place on the way of a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Share {
+    /// Nothing: the road is level there.
+    Level,
+    /// A part of it, with the first two derivatives along the bridge of that part.
+    Faded([f64; 3]),
+    /// All of it.
+    Whole,
+    /// Its elevation where it ends, from where on it is level.
+    Beyond,
+}
+
+impl Share {
+    /// The surface, from elevation, slope and curvature of the road.
+    #[inline(always)]
+    pub fn of<L: Lane>(&self, [elevation, slope, curvature]: [L; 3]) -> Surface<L> {
+        let zero = L::splat(0.0);
+        match *self {
+            Share::Level => Surface { elevation: zero, slope: zero, curvature: zero },
+            Share::Whole => Surface { elevation, slope, curvature },
+            Share::Beyond => Surface { elevation, slope: zero, curvature: zero },
+            Share::Faded(fade) => {
+                let [fade, fade_1, fade_2] = fade.map(L::splat);
+                Surface {
+                    elevation: fade * elevation,
+                    slope: fade * slope + fade_1 * elevation,
+                    curvature: fade * curvature + L::splat(2.0) * fade_1 * slope + fade_2 * elevation,
+                }
+            }
+        }
+    }
+}
+
 impl Pavement<'_> {
+    /// What of the road counts at x [m], and where to look for it.
+    pub fn share(&self, x: f64) -> (Share, f64) {
+        let way = self.direction * (x - self.start);
+        // Without a ramp the road is there behind the start too, under the axles that follow the first.
+        if way <= 0.0 && self.ramp > 0.0 {
+            (Share::Level, x)
+        } else if self.direction * (x - self.end) > 0.0 {
+            (Share::Beyond, self.end)
+        } else if self.ramp == 0.0 || way >= self.ramp {
+            (Share::Whole, x)
+        } else {
+            let [fade, fade_1, fade_2] = fade(way / self.ramp, self.ramp);
+            (Share::Faded([fade, self.direction * fade_1, fade_2]), x)
+        }
+    }
+
     /// The surface at x [m].
     pub fn at(&self, x: f64) -> Surface<f64> {
-        let way = self.direction * (x - self.start);
-        if self.road.is_smooth() || way <= 0.0 && self.ramp > 0.0 {
+        if self.road.is_smooth() {
             return Surface::LEVEL;
         }
-        if self.direction * (x - self.end) > 0.0 {
-            return Surface { elevation: self.road.at(self.end).elevation, slope: 0.0, curvature: 0.0 };
+        let (share, x) = self.share(x);
+        if share == Share::Level {
+            return Surface::LEVEL;
         }
         let point = self.road.at(x);
-        // Without a ramp the road is there behind the start too, under the axles that follow the first.
-        if self.ramp == 0.0 || way >= self.ramp {
-            return Surface { elevation: point.elevation, slope: point.slope, curvature: point.curvature };
-        }
-        let [fade, fade_1, fade_2] = fade(way / self.ramp, self.ramp);
-        let fade_1 = self.direction * fade_1;
-        Surface {
-            elevation: fade * point.elevation,
-            slope: fade * point.slope + fade_1 * point.elevation,
-            curvature: fade * point.curvature + 2.0 * fade_1 * point.slope + fade_2 * point.elevation,
-        }
+        share.of([point.elevation, point.slope, point.curvature])
     }
 }
 

@@ -72,7 +72,10 @@ impl Road {
 
     /// All of them on top of each other.
     pub fn sum(roads: impl IntoIterator<Item = Road>) -> Self {
-        Road { parts: roads.into_iter().flat_map(|road| road.parts).collect() }
+        let mut parts: Vec<Part> = roads.into_iter().flat_map(|road| road.parts).collect();
+        // What is random comes last in the sum, as in an ensemble, where the rest is the same for all.
+        parts.sort_by_key(|part| matches!(part, Part::Random(_)));
+        Road { parts }
     }
 
     /// Whether there is no roughness.

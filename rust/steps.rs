@@ -27,6 +27,9 @@ pub struct Steps {
     pub h: f64,
     /// Number without the tail, if all vehicles move as prescribed; else about this many.
     pub count: usize,
+    /// Way per step [m] of a vehicle alone at constant speed, which is marched in space: its axles are at the same
+    /// places after as many steps whatever its speed.
+    pub advance: Option<f64>,
 }
 
 impl Steps {
@@ -92,7 +95,13 @@ impl Steps {
             );
             return Err(Error::input("modes", modes, allowed));
         }
-        Ok(Steps { h: span / count, count: count as usize })
+        Ok(match courses {
+            [course] if course.is_steady() => {
+                let advance = course.path(settings, length) / count;
+                Steps { h: advance / course.speed, count: count as usize, advance: Some(advance) }
+            }
+            _ => Steps { h: span / count, count: count as usize, advance: None },
+        })
     }
 }
 
