@@ -55,6 +55,12 @@ impl ModalBridge {
 
     /// Upper bound of the fastest circular frequency of bridge and vehicles together, suspensions locked [rad/s].
     pub fn fastest_frequency<'a>(&self, vehicles: impl Iterator<Item = &'a Vehicle>) -> f64 {
+        let [bridge, own, tyres] = self.fastest_parts(vehicles);
+        (bridge + own + tyres).sqrt()
+    }
+
+    /// What the square of that is the sum of [rad²/s²]: of the bridge, of the vehicles, of tyres on the bridge.
+    pub fn fastest_parts<'a>(&self, vehicles: impl Iterator<Item = &'a Vehicle>) -> [f64; 3] {
         // The stiffness is that of the bridge plus that of the contact springs, whose largest eigenvalue is at most the
         // largest of the vehicles' own plus the sum of k φ² (Weyl's inequality, and the trace).
         let bridge = self.omega.iter().copied().fold(0.0, f64::max);
@@ -64,7 +70,7 @@ impl ModalBridge {
             tyres += vehicle.assembly().contacts.iter().map(|c| c.law.tyre_stiffness()).sum::<f64>();
         }
         let own = own * std::f64::consts::TAU;
-        (bridge.powi(2) + own.powi(2) + tyres * self.shapes.largest_sum_of_squares()).sqrt()
+        [bridge.powi(2), own.powi(2), tyres * self.shapes.largest_sum_of_squares()]
     }
 }
 

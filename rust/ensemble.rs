@@ -1,271 +1,516 @@
 //! Many crossings of one bridge: samples side by side in the lanes of one step, block after block on all cores.
 //!
 //! With prescribed motion in equal steps of space, where the axles are and what their loads do to the bridge is the
-//! same for every sample, whatever its speed, its road or its springs: one [`table`] serves all. A sample's result is a
-//! function of the plan, the seed and its own number, to the bit: not of the number of threads, of the width of the
-//! vectors, or of its neighbours.
+//! same for every sample, whatever its speed, its road or its springs: one [`table`] serves all. Samples whose motion is
+//! their own take the same step [`alone`]. A sample's result is a function of the study, the seed and its own number, to
+//! the bit: not of the number of threads, of the width of the vectors, or of its neighbours.
 
+pub mod alone;
 pub mod block;
+pub mod look;
+pub mod record;
+pub mod sample;
 pub mod simd;
 pub mod table;
+pub mod together;
+pub mod watch;
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
 use crate::analysis::Analysis;
-use crate::course::Drive;
-use crate::crossing::cross;
-use crate::envelope::{Envelope, Extreme};
+use crate::assembly::ContactLaw;
+use crate::course::{Course, Drive, Passage};
 use crate::error::{Error, positive};
-use crate::lane::Lane;
-use crate::path::{Pavement, fade};
+use crate::float_mode::Standard;
+use crate::influence::Quantity;
+use crate::path::Pavement;
 use crate::road::random::Synthesis;
-use crate::road::spline::Taps;
 use crate::settings::Settings;
-use crate::step::{Moving, Propulsion, Scheme, Stepper, Surface};
-use crate::survey::survey;
+use crate::steps::{MAX_STEPS, Steps};
 use crate::vehicle::Vehicle;
-use block::{Seen, Watched};
+use look::Look;
+use record::{Failure, Layout, Record, Results};
+use sample::{Parameter, Samples};
 use simd::Isa;
-use table::{Below, Table};
+use table::{Advance, Ground, Table};
 
-/// The road of the samples.
+/// Samples that a worker takes at a time unless told otherwise.
+pub const BLOCK: usize = 32;
+
+/// Halvings of the step that a sample may ask for.
+const MOST_HALVINGS: u32 = 16;
+
+/// One kind of event: a vehicle, or several, on their way.
 #[derive(Debug, Clone)]
-pub enum Roads {
-    /// That of the settings, the same for all.
-    Given,
-    /// An own random road for each sample.
-    Random {
-        /// What they share.
-        synthesis: Arc<Synthesis>,
-        /// Seed of the study.
-        seed: u64,
-    },
+pub struct Kind {
+    /// Who crosses.
+    pub passages: Vec<Passage>,
+    /// Vertical displacement of every body of the first vehicle, as rows over its coordinates.
+    bodies: Vec<Vec<f64>>,
+    /// Static extremes, largest of all responses looked at, then smallest, where all samples have them alike.
+    pub at_rest: Vec<f64>,
 }
 
 /// Everything that the samples of a study share.
 #[derive(Debug)]
-pub struct Plan {
-    analysis: Arc<Analysis>,
-    vehicle: Vehicle,
-    settings: Settings,
-    roads: Roads,
-    /// Way per step [m].
-    advance: f64,
-    table: Table,
-    /// Static extremes, the same for all samples.
-    at_rest: Envelope,
+pub struct Study {
+    /// The bridge.
+    pub analysis: Arc<Analysis>,
+    /// The kinds of event, of which each sample is one.
+    pub kinds: Vec<Kind>,
+    /// How they cross; the speed is that of each sample.
+    pub settings: Settings,
+    /// What samples' own random roads have in common, and the seed; they come on top of the road of the settings.
+    pub own: Option<(Arc<Synthesis>, u64)>,
+    /// Longest way per step [m].
+    advance: Option<f64>,
+    /// The responses looked at.
+    pub look: Look,
+    /// Whether samples share the geometry.
+    pub shares: bool,
 }
 
-/// One sample of a study.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// Its number, which names its road.
-    pub number: u64,
-    /// Speed [m/s].
-    pub speed: f64,
+/// Who does the work, and in which portions; none of it changes a result.
+#[derive(Debug, Clone, Copy)]
+pub struct Workers {
+    /// The instruction set.
+    pub isa: Isa,
+    /// Threads.
+    pub threads: usize,
+    /// Samples that a worker takes at a time.
+    pub chunk: usize,
 }
 
-/// Extremes of a response in a sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found {
-    /// Largest.
-    pub max: Extreme,
-    /// Smallest.
-    pub min: Extreme,
+impl Workers {
+    /// As many as the machine has, or as the caller wants.
+    pub fn new(threads: Option<usize>, chunk: Option<usize>) -> Result<Self, Error> {
+        let threads = match threads {
+            Some(0) => return Err(Error::input("threads", 0, "must be 1 or more")),
+            Some(threads) if threads > 4096 => return Err(Error::input("threads", threads, "must be at most 4096")),
+            Some(threads) => threads,
+            None => std::thread::available_parallelism().map_or(1, usize::from),
+        };
+        match chunk {
+            Some(0) => Err(Error::input("chunk", 0, "must be 1 or more")),
+            chunk => Ok(Workers { isa: Isa::chosen()?, threads, chunk: chunk.unwrap_or(BLOCK) }),
+        }
+    }
 }
 
-/// What a sample gives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// By response.
-    pub responses: Vec<Found>,
-    /// By axle.
-    pub loads: Vec<Found>,
-    /// By axle: standard deviation of the load by its static value.
-    pub load_coefficients: Vec<f64>,
-    /// By axle: time off the road [s].
-    pub aloft: Vec<f64>,
+/// What others may see of a run, and whether it shall go on.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Samples done.
+    pub done: AtomicUsize,
+    /// Set to end the run.
+    pub stop: AtomicBool,
 }
 
-impl Plan {
-    /// For crossings by `vehicle` at constant speed from left to right, in steps of `advance` [m] at most.
+/// How a sample marches: which kind of event, and how often the step is halved.
+type March = (usize, u32);
+
+impl Study {
+    /// Of crossings of a bridge by `kinds` of event, with the samples' `own` roads on top of that of the settings, in
+    /// steps of `advance` [m] at most, looking at some quantities.
     pub fn new(
         analysis: Arc<Analysis>,
-        vehicle: &Vehicle,
-        settings: &Settings,
-        advance: f64,
-        roads: Roads,
+        kinds: Vec<Vec<Passage>>,
+        settings: Settings,
+        own: Option<(Arc<Synthesis>, u64)>,
+        advance: Option<f64>,
+        quantities: &[Quantity],
     ) -> Result<Self, Error> {
-        if settings.drive != Drive::ConstantSpeed {
-            let allowed = "samples move at constant speed: others do not share the geometry";
-            return Err(Error::input("drive", format!("{:?}", settings.drive), allowed));
+        settings.check()?;
+        if kinds.is_empty() || kinds.iter().any(Vec::is_empty) {
+            return Err(Error::input("vehicles", "[]", "at least one vehicle must cross"));
         }
-        positive("advance", advance)?;
-        let assembly = vehicle.assembly();
-        let length = analysis.model.shapes.mesh().length();
-        let front = assembly.contacts[0].position;
-        let behind: Vec<f64> = assembly.contacts.iter().map(|c| front - c.position).collect();
-        let wheelbase = behind[behind.len() - 1];
-        let path = settings.approach + length + wheelbase;
-        let steps = (path / advance - 1e-9).ceil().max(1.0) as usize;
-        let advance = path / steps as f64;
-        let (start, end) = (-settings.approach, length + wheelbase);
-        if let Roads::Random { synthesis, .. } = &roads
-            && path > synthesis.period()
-        {
-            let allowed = format!("it repeats after its period of {} m, and the path is longer", synthesis.period());
-            return Err(Error::input("road", format!("path from {start} m to {end} m"), allowed));
-        }
-        let pavement = Pavement { road: &settings.road, start, end, ramp: settings.ramp, direction: 1.0 };
-        let below = |x: f64| match &roads {
-            Roads::Given => Below::Given(pavement.at(x)),
-            Roads::Random { synthesis, .. } => {
-                let way = x - start;
-                if way <= 0.0 && settings.ramp > 0.0 {
-                    return Below::Given(Surface::LEVEL);
-                }
-                let faded = match way >= settings.ramp || settings.ramp == 0.0 {
-                    true => [1.0, 0.0],
-                    false => {
-                        let [value, slope, _] = fade(way / settings.ramp, settings.ramp);
-                        [value, slope]
-                    }
-                };
-                Below::Own(Taps::new(x, synthesis.points(), synthesis.period()), faded)
+        let advance = advance.map(|advance| positive("advance", advance)).transpose()?;
+        let constant = |passage: &Passage| *passage.drive.as_ref().unwrap_or(&settings.drive) == Drive::ConstantSpeed;
+        let shares = kinds.iter().all(|passages| match &passages[..] {
+            [one] => {
+                let plain = one.direction == crate::course::Direction::Right && one.entry == 0.0 && one.road.is_none();
+                plain && constant(one) && one.speed.is_none()
             }
+            _ => false,
+        });
+        let look = Look::new(&analysis.rows, &analysis.responses, quantities);
+        if look.chosen.is_empty() {
+            return Err(Error::input("quantities", "[]", "at least one response must be looked at"));
+        }
+        let mut study = Study { analysis, kinds: Vec::new(), settings, own, advance, look, shares };
+        for passages in kinds {
+            let bodies = passages[0].vehicle.assembly().bodies.iter();
+            let bodies = bodies.map(|[heave, _]| heave.iter().copied().collect()).collect();
+            study.kinds.push(Kind { passages, bodies, at_rest: Vec::new() });
+        }
+        for kind in 0..study.kinds.len() {
+            study.check_road(kind)?;
+        }
+        if shares {
+            for kind in 0..study.kinds.len() {
+                study.kinds[kind].at_rest = together::at_rest(&study, kind)?;
+            }
+        } else if advance.is_some() {
+            let allowed = "only for vehicles that cross alone from the left at constant speed: use step";
+            return Err(Error::input("advance", format!("{} m", advance.unwrap_or_default()), allowed));
+        }
+        Ok(study)
+    }
+
+    /// Whether a passage has its speed from its drive.
+    pub fn brings_speeds(&self, passage: &Passage) -> bool {
+        matches!(passage.drive.as_ref().unwrap_or(&self.settings.drive), Drive::Speeds { .. })
+    }
+
+    /// Refuses a road that repeats on the way, and contacts that cannot follow it.
+    fn check_road(&self, kind: usize) -> Result<(), Error> {
+        let length = self.analysis.model.shapes.mesh().length();
+        for passage in &self.kinds[kind].passages {
+            // The speed, where none is given yet, plays no part.
+            let speed = passage.speed.or((!self.brings_speeds(passage)).then_some(1.0));
+            let passage = Passage { speed, ..passage.clone() };
+            let course = Course::new(&passage, &self.settings, "", 0)?;
+            course.check_road(&self.settings, length)?;
+            course.check_contact(&self.analysis.model.shapes)?;
+            let path = course.path(&self.settings, length);
+            if let Some((synthesis, _)) = self.own.as_ref().filter(|(own, _)| path > own.period()) {
+                let allowed = format!(
+                    "it repeats after its period of {} m, and the path is longer; give a longer one",
+                    synthesis.period()
+                );
+                return Err(Error::input("road", format!("path of {path} m"), allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the road is level throughout.
+    fn is_even(&self) -> bool {
+        self.own.is_none() && self.settings.road.is_smooth()
+    }
+
+    /// The vehicles of every kind.
+    fn vehicles(&self) -> Vec<Vec<&Vehicle>> {
+        self.kinds.iter().map(|kind| kind.passages.iter().map(|p| &p.vehicle).collect()).collect()
+    }
+
+    /// Where things stand in the rows of a run's results.
+    pub fn layout(&self, samples: &Samples) -> Layout {
+        let most = |count: &dyn Fn(&Vehicle) -> usize| {
+            let of = self.kinds.iter().map(|k| k.passages.iter().map(|p| count(&p.vehicle)).sum());
+            of.max().unwrap_or(0)
         };
-        let slopes = !assembly.contacts.iter().all(|contact| contact.law.is_plain());
-        let table = Table::new(
-            &analysis.model.shapes,
-            &analysis.rows,
-            &analysis.responses,
-            behind.len(),
-            steps,
-            |step, axle| start + advance * step as f64 - behind[axle],
-            slopes,
-            below,
-        );
-        let smooth = Settings {
-            step: Some(advance / settings.speed),
-            road: Arc::new(crate::road::Road::smooth()),
-            ..settings.clone()
-        };
-        let history = cross(&analysis.model, vehicle, &smooth, &mut || true)?;
-        let packed = analysis.rows.pack_history(&history);
-        let at_rest = survey(&history, &analysis.rows, &packed, &analysis.responses, &mut || true)?;
-        Ok(Plan { analysis, vehicle: vehicle.clone(), settings: settings.clone(), roads, advance, table, at_rest })
+        Layout {
+            responses: self.look.chosen.len(),
+            axles: most(&|v| v.assembly().contacts.len()),
+            bodies: most(&|v| v.bodies().len()),
+            own_statics: !self.shares
+                || samples.varies(Parameter::BodyMass)
+                || samples.varies(Parameter::BridgeStiffness),
+            own_times: !self.shares,
+        }
     }
 
-    /// The static extremes.
-    pub fn at_rest(&self) -> &Envelope {
-        &self.at_rest
+    /// The vehicle of a kind whose samples share the geometry.
+    pub fn vehicle(&self, kind: usize) -> &Vehicle {
+        &self.kinds[kind].passages[0].vehicle
     }
 
-    /// Number of steps of every sample.
-    pub fn steps(&self) -> usize {
-        self.table.steps
-    }
-
-    fn stepper(&self, sample: &Sample, still: bool) -> Stepper<f64> {
-        let h = if still { 0.0 } else { self.advance / sample.speed };
-        let Settings { beta, gravity, lift_off, .. } = self.settings;
-        let moving = [Moving { assembly: self.vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
+    /// Steps of a kind that is not refined, and the way of each [m].
+    pub fn plan(&self, kind: usize) -> (usize, f64) {
         let model = &self.analysis.model;
-        Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h, beta, gravity, lift_off })
+        let vehicle = self.vehicle(kind);
+        let path = self.settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
+        let longest = self.advance.unwrap_or_else(|| {
+            Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest())
+        });
+        let steps = (path / longest - 1e-9).ceil().max(1.0);
+        (steps as usize, path / steps)
     }
 
-    /// One block of samples in the lanes of L; missing ones are filled up with the last.
-    #[inline(always)]
-    fn block<L: Lane>(&self, samples: &[Sample]) -> Result<Vec<Outcome>, Error> {
-        let of = |lane: usize| &samples[lane.min(samples.len() - 1)];
-        let steppers: Vec<Stepper<f64>> = (0..L::SAMPLES).map(|lane| self.stepper(of(lane), false)).collect();
-        let starters: Vec<Stepper<f64>> = (0..L::SAMPLES).map(|lane| self.stepper(of(lane), true)).collect();
-        let road: Vec<L> = match &self.roads {
-            Roads::Given => Vec::new(),
-            Roads::Random { synthesis, seed } => synthesis.coefficients(*seed, |lane| of(lane).number),
+    /// The geometry of a kind whose step is halved so many times.
+    pub fn table(&self, (kind, halvings): March) -> Table {
+        let Analysis { model, rows, responses, .. } = &*self.analysis;
+        let contacts = &self.vehicle(kind).assembly().contacts;
+        let length = model.shapes.mesh().length();
+        let wheelbase = self.vehicle(kind).wheelbase();
+        let front = contacts[0].position;
+        let (steps, _) = self.plan(kind);
+        let steps = steps << halvings;
+        let advance = (self.settings.approach + length + wheelbase) / steps as f64;
+        let beyond = if self.settings.tail > 0.0 { (wheelbase / advance).ceil() as usize + 2 } else { 0 };
+        let pavement = Pavement {
+            road: &self.settings.road,
+            start: -self.settings.approach,
+            end: length + wheelbase,
+            ramp: self.settings.ramp,
+            direction: 1.0,
         };
-        let speed = L::from_fn(|lane| of(lane).speed);
-        let mut stepper = Stepper::<L>::gather(&steppers);
-        let mut starter = Stepper::<L>::gather(&starters);
-        match block::march(&self.table, &self.analysis.rows, &mut stepper, &mut starter, &road, speed) {
-            Ok(seen) => {
-                Ok(samples.iter().enumerate().map(|(lane, sample)| self.outcome(&seen, lane, sample)).collect())
+        let path = Advance {
+            start: -self.settings.approach,
+            advance,
+            behind: contacts.iter().map(|c| front - c.position).collect(),
+            steps,
+            beyond,
+        };
+        let slopes = !contacts.iter().all(|contact| contact.law.is_plain());
+        let ground = Ground { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
+        Table::new(path, &model.shapes, (rows, responses, &self.look), slopes, ground)
+    }
+
+    /// How often the step of each sample must be halved: a function of the sample alone.
+    fn marches(&self, samples: &Samples) -> Result<Vec<March>, Error> {
+        let beta = self.settings.beta;
+        // Squared frequencies of bridge, vehicle and tyres on the bridge, of each kind as it is.
+        let model = &self.analysis.model;
+        let fastest: Vec<[f64; 3]> = (0..self.kinds.len())
+            .map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind))))
+            .collect();
+        let plans: Vec<(usize, f64)> = (0..self.kinds.len()).map(|kind| self.plan(kind)).collect();
+        let march = |sample: usize| {
+            let kind = samples.kind(sample);
+            let [bodies, axles] = [self.vehicle(kind).bodies().len(), self.vehicle(kind).assembly().contacts.len()];
+            let extreme = |parameter: Parameter, count: usize, pick: fn(f64, f64) -> f64| {
+                let all = (0..count).filter_map(|part| samples.factor(parameter, sample, part));
+                all.fold(1.0, pick)
+            };
+            let tyres = extreme(Parameter::TyreStiffness, axles, f64::max);
+            let springs = tyres.max(extreme(Parameter::SuspensionStiffness, axles, f64::max));
+            let inertia = extreme(Parameter::BodyMass, bodies, f64::min)
+                .min(extreme(Parameter::PitchInertia, bodies, f64::min));
+            let [bridge, own, on_bridge] = fastest[kind];
+            let stiffness = extreme(Parameter::BridgeStiffness, 1, f64::max);
+            let fastest = (bridge * stiffness + own * springs / inertia + on_bridge * tyres).sqrt();
+            let limit = if beta < 0.25 { 1.0 / (fastest * (0.25 - beta).sqrt()) } else { f64::INFINITY };
+            let longest = match (self.settings.step, self.advance) {
+                (Some(step), _) => step.min(limit),
+                (None, Some(_)) => limit,
+                (None, None) => Steps::resolving(fastest).min(limit),
+            };
+            let speed = samples.speed(sample, 0);
+            let (steps, mut way) = plans[kind];
+            let mut halvings = 0;
+            // Where one step just fits, rounding does not halve it.
+            while way > longest * speed * (1.0 + 1e-9) && halvings <= MOST_HALVINGS {
+                way *= 0.5;
+                halvings += 1;
             }
-            Err(_) => Err(Error::NoConvergence { what: "contact forces", time: f64::NAN, position: f64::NAN }),
-        }
-    }
-
-    fn outcome<L: Lane>(&self, seen: &Seen<L>, lane: usize, sample: &Sample) -> Outcome {
-        let h = self.advance / sample.speed;
-        let at_step = |value: L, at: L| {
-            let step = at.get(lane);
-            let position = self.table.x(step as usize, 0);
-            Extreme { value: value.get(lane), time: step * h, position, partner: f64::NAN }
-        };
-        let at_stop = |value: L, at: L| {
-            let stop = &self.table.stops[at.get(lane) as usize];
-            let (before, after) = ((stop.step - 1) as f64 * h, stop.step as f64 * h);
-            let time = before + stop.fraction * (after - before);
-            Extreme { value: value.get(lane), time, position: stop.position, partner: f64::NAN }
-        };
-        let found = |steps: &Watched<L>, stops: Option<&Watched<L>>| {
-            let mut found = Found { max: at_step(steps.max, steps.max_at), min: at_step(steps.min, steps.min_at) };
-            if let Some(stops) = stops.filter(|stops| stops.max.get(lane) > f64::NEG_INFINITY) {
-                let (max, min) = (at_stop(stops.max, stops.max_at), at_stop(stops.min, stops.min_at));
-                if max.value > found.max.value || (max.value == found.max.value && max.time < found.max.time) {
-                    found.max = max;
-                }
-                if min.value < found.min.value || (min.value == found.min.value && min.time < found.min.time) {
-                    found.min = min;
-                }
+            let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + self.settings.tail * speed / way;
+            if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
+                let allowed = format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
+                return Err(Error::input(format!("speed[{sample}]"), format!("{speed} m/s"), allowed));
             }
-            found
+            Ok((kind, halvings))
         };
-        let count = (self.table.steps + 1) as f64;
-        let static_loads = self.vehicle.static_loads(self.settings.gravity);
-        let coefficient = |k: usize| {
-            let [sum, squares] = seen.sums[k].map(|s| s.get(lane));
-            let mean = sum / count;
-            (squares / count - mean * mean).max(0.0).sqrt() / static_loads[k]
-        };
-        Outcome {
-            responses: seen.steps.iter().zip(&seen.stops).map(|(steps, stops)| found(steps, Some(stops))).collect(),
-            loads: seen.loads.iter().map(|watched| found(watched, None)).collect(),
-            load_coefficients: (0..self.table.axles).map(coefficient).collect(),
-            aloft: seen.aloft.iter().map(|steps| steps.get(lane) * h).collect(),
+        if samples.alike() && samples.kinds.is_empty() && samples.count > 0 {
+            let all = march(0)?;
+            return Ok(vec![all; samples.count]);
         }
+        (0..samples.count).map(march).collect()
     }
 
-    /// Runs samples one block after the other on `isa` with `threads` workers, and hands every block's outcomes to `take`
-    /// in no order, with the number of its first sample.
-    pub fn run(
-        &self,
-        samples: &[Sample],
-        isa: Isa,
-        threads: usize,
-        take: impl Fn(usize, Vec<Outcome>) + Sync,
-        go_on: impl Fn() -> bool + Sync,
-    ) -> Result<(), Error> {
-        let width = simd::samples(isa);
-        let stopped = AtomicBool::new(false);
-        let failed = AtomicUsize::new(0);
+    /// Runs all samples.
+    pub fn run(&self, samples: &Samples, workers: &Workers, progress: &Progress) -> Result<Run, Error> {
+        samples.check(&self.vehicles())?;
+        self.check_factors(samples)?;
+        let layout = self.layout(samples);
+        let count = samples.count;
+        let own = if self.shares { self.marches(samples)? } else { vec![(0, 0); count] };
+        let mut distinct: BTreeMap<March, Vec<u32>> = BTreeMap::new();
+        for (sample, march) in own.iter().enumerate() {
+            distinct.entry(*march).or_default().push(sample as u32);
+        }
+        let marches: Vec<March> = distinct.keys().copied().collect();
+        let number: BTreeMap<March, u32> = marches.iter().zip(0..).map(|(&march, i)| (march, i)).collect();
+        let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
+        drop(own);
+        let tables: Vec<Arc<Table>> = match self.shares {
+            true => marches.iter().map(|&march| Arc::new(self.table(march))).collect(),
+            false => Vec::new(),
+        };
+        let order: Vec<u32> = distinct.values().flatten().copied().collect();
+        let mut results = Results {
+            layout,
+            numbers: vec![0.0; count * layout.width()],
+            instants: vec![0; count * layout.instants()],
+            marches: of_samples,
+            digests: vec![0; count],
+            failures: Vec::new(),
+        };
+        let failures = Mutex::new(Vec::new());
+        let portions = portions(&distinct, &mut results, workers.chunk);
+        let go_on = || !progress.stop.load(Ordering::Relaxed);
         let work = || {
-            samples.par_chunks(width).enumerate().try_for_each(|(block, chunk)| {
-                if stopped.load(Ordering::Relaxed) || !go_on() {
-                    stopped.store(true, Ordering::Relaxed);
-                    return Err(Error::Interrupted);
+            portions.into_par_iter().try_for_each(|portion| {
+                let Portion { march, members, mut records, digests } = portion;
+                let mut failed = Vec::new();
+                let (kind, _) = marches[march];
+                if self.shares {
+                    let task = together::Task { study: self, layout, samples, kind, table: &tables[march] };
+                    for (members, records) in members.chunks(BLOCK).zip(records.chunks_mut(BLOCK)) {
+                        task.run(workers.isa, members, records, &mut failed, &go_on)?;
+                    }
+                } else {
+                    for (&member, record) in members.iter().zip(&mut records) {
+                        let sample = member as usize;
+                        match alone::cross(self, &layout, samples, sample, record, &mut || go_on()) {
+                            Ok(()) => {}
+                            Err(Error::Interrupted) => return Err(Error::Interrupted),
+                            Err(cause) => {
+                                record.forget();
+                                failed.push(Failure { sample, step: None, cause });
+                            }
+                        }
+                    }
                 }
-                let outcomes = simd::run(isa, self, chunk).inspect_err(|_| {
-                    failed.fetch_add(1, Ordering::Relaxed);
-                })?;
-                take(block * width, outcomes);
-                Ok(())
+                for (record, digest) in records.iter().zip(digests) {
+                    *digest = record.digest();
+                }
+                if !failed.is_empty() {
+                    failures.lock().unwrap_or_else(|e| e.into_inner()).extend(failed);
+                }
+                progress.done.fetch_add(members.len(), Ordering::Relaxed);
+                if go_on() { Ok(()) } else { Err(Error::Interrupted) }
             })
         };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map_err(|e| Error::input("threads", threads, e.to_string()))?.install(work)
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(workers.threads.min(count.max(1)))
+            .thread_name(|i| format!("spanwise-{i}"))
+            // For as long as the thread lives.
+            .start_handler(|_| std::mem::forget(Standard::set()))
+            .build()
+            .map_err(|e| Error::input("threads", workers.threads, e.to_string()))?;
+        pool.install(work)?;
+        results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
+        results.failures.sort_by_key(|failure| failure.sample);
+        if marches.len() > 1 {
+            put_back(&order, &mut results);
+        }
+        let refinements = marches.iter().map(|(_, halvings)| *halvings).collect();
+        Ok(Run { results, tables, refinements })
     }
+
+    /// Refuses factors on what a vehicle does not have.
+    fn check_factors(&self, samples: &Samples) -> Result<(), Error> {
+        for factors in &samples.factors {
+            let parameter = factors.parameter;
+            let of_bridge = matches!(parameter, Parameter::BridgeStiffness | Parameter::BridgeDamping);
+            for passage in self.kinds.iter().flat_map(|kind| &kind.passages) {
+                let vehicle = &passage.vehicle;
+                let train = vehicle.bodies().is_empty();
+                let name = parameter.name();
+                if train && !of_bridge && parameter != Parameter::BodyMass {
+                    let what = match vehicle.assembly().contacts[0].law {
+                        ContactLaw::Force => "forces",
+                        _ => "masses",
+                    };
+                    let allowed = format!("a train of {what} has no such thing, only body_mass");
+                    return Err(Error::input("factors", format!("\"{name}\""), allowed));
+                }
+                let locked = vehicle.axles().iter().any(|axle| axle.friction.limit.is_infinite());
+                if locked && matches!(parameter, Parameter::FrictionLimit | Parameter::InitialFriction) {
+                    let allowed = "not with locked suspensions, whose friction has no limit";
+                    return Err(Error::input("factors", format!("\"{name}\""), allowed));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a run leaves, with the tables that its instants refer to.
+#[derive(Debug)]
+pub struct Run {
+    /// The results.
+    pub results: Results,
+    /// By march.
+    pub tables: Vec<Arc<Table>>,
+    /// How often the step was halved, by march.
+    pub refinements: Vec<u32>,
+}
+
+impl Run {
+    /// Time [s] and position of the front axle [m] at an instant of a sample that shares the geometry.
+    pub fn when(&self, study: &Study, samples: &Samples, sample: usize, instant: u32) -> (f64, f64) {
+        let table = &self.tables[self.results.marches[sample] as usize];
+        let h = table.path.advance / samples.speed(sample, 0);
+        match record::stop_or_step(instant) {
+            Ok(stop) => {
+                let stop = &table.stops[stop];
+                let (before, after) = ((stop.step - 1) as f64 * h, stop.step as f64 * h);
+                (before + stop.fraction * (after - before), stop.position)
+            }
+            Err(step) => {
+                let (time, position) = (step as f64 * h, table.path.x(step, 0));
+                let (last, fraction) = together::end(table.path.steps, h, study.settings.tail);
+                if step < last || fraction == 1.0 {
+                    return (time, position);
+                }
+                let (before, behind) = ((step - 1) as f64 * h, table.path.x(step - 1, 0));
+                (before + fraction * (time - before), behind + fraction * (position - behind))
+            }
+        }
+    }
+}
+
+/// What a worker takes at a time.
+struct Portion<'a> {
+    march: usize,
+    members: &'a [u32],
+    records: Vec<Record<'a>>,
+    digests: &'a mut [u64],
+}
+
+/// The samples of each march in portions, with the rows that they fill, which follow each other in this order.
+fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Results, chunk: usize) -> Vec<Portion<'a>> {
+    let (width, instants) = (results.layout.width(), results.layout.instants());
+    let mut numbers = &mut results.numbers[..];
+    let mut moments = &mut results.instants[..];
+    let mut digests = &mut results.digests[..];
+    let mut portions = Vec::new();
+    for (march, members) in distinct.values().enumerate() {
+        for members in members.chunks(chunk) {
+            let n = members.len();
+            let (own_numbers, rest_numbers) = std::mem::take(&mut numbers).split_at_mut(n * width);
+            let (own_moments, rest_moments) = std::mem::take(&mut moments).split_at_mut(n * instants);
+            let (own_digests, rest_digests) = std::mem::take(&mut digests).split_at_mut(n);
+            (numbers, moments, digests) = (rest_numbers, rest_moments, rest_digests);
+            let rows = own_numbers.chunks_exact_mut(width).zip(own_moments.chunks_exact_mut(instants.max(1)));
+            let records = rows.map(|(numbers, instants)| Record { numbers, instants }).collect();
+            portions.push(Portion { march, members, records, digests: own_digests });
+        }
+    }
+    portions
+}
+
+/// Puts rows that follow each other as in `order` in the order of the samples.
+fn put_back(order: &[u32], results: &mut Results) {
+    let (width, instants) = (results.layout.width(), results.layout.instants());
+    let mut from: Vec<u32> = vec![0; order.len()];
+    for (row, &sample) in order.iter().enumerate() {
+        from[sample as usize] = row as u32;
+    }
+    for sample in 0..from.len() {
+        // Round each cycle: the row that belongs here comes in exchange for the one that stands here.
+        let mut here = sample;
+        while from[here] as usize != sample {
+            let there = from[here] as usize;
+            swap_rows(&mut results.numbers, width, here, there);
+            swap_rows(&mut results.instants, instants, here, there);
+            results.digests.swap(here, there);
+            from[here] = here as u32;
+            here = there;
+        }
+        from[here] = here as u32;
+    }
+}
+
+fn swap_rows<T>(values: &mut [T], width: usize, a: usize, b: usize) {
+    let (a, b) = (a.min(b), a.max(b));
+    let (low, high) = values.split_at_mut(b * width);
+    low[a * width..(a + 1) * width].swap_with_slice(&mut high[..width]);
 }

@@ -33,6 +33,8 @@ impl Extremes {
 
     /// Takes in one response at one instant; of equal values the earliest counts, in whatever order they come.
     pub(crate) fn take(&mut self, r: usize, seen: Extreme) {
+        // Zeros lose their sign, which says nothing and would depend on the order of sums.
+        let seen = Extreme { value: seen.value + 0.0, ..seen };
         let (max, min) = (&mut self.max[r], &mut self.min[r]);
         if seen.value > max.value || (seen.value == max.value && seen.time < max.time) {
             *max = seen;

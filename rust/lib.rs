@@ -27,6 +27,7 @@ pub mod vehicle;
 
 pub mod road;
 
+pub mod float_mode;
 pub mod lane;
 
 pub mod contact;

@@ -89,13 +89,8 @@ impl<'a> March<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<History, Error> {
         let front = |geometry: &G| geometry.motion(0).x;
-        let unsettled = |what: Unsettled, time: f64, position: f64| {
-            let what = match what {
-                Unsettled::ContactForces => "contact forces",
-                Unsettled::AxlePositions => "axle positions",
-            };
-            Error::NoConvergence { what, time, position }
-        };
+        let unsettled =
+            |what: Unsettled, time: f64, position: f64| Error::NoConvergence { what: what.name(), time, position };
         let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
         let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0.0, front(geometry)))?;
         for (travel, course) in state.travel.iter_mut().zip(self.courses) {

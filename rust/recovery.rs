@@ -285,6 +285,20 @@ impl Rows {
         c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))
     }
 
+    /// Whether two responses have the same row, to the bit.
+    pub fn same(&self, a: usize, b: usize) -> bool {
+        let [row_a, row_b] = [a / WIDTH, b / WIDTH];
+        let [i, j] = [a % WIDTH, b % WIDTH];
+        (0..self.width).all(|k| self.factor(a, k) == self.factor(b, k))
+            && self.lines.chunks_exact(self.blocks()).all(|panel| (0..4).all(|p| panel[row_a][p][i] == panel[row_b][p][j]))
+    }
+
+    /// Adds, mode by mode, what a static load of one at a place adds to Ā_st; nothing where the rows do not need it.
+    pub fn extend_static(&self, place: Place, values: &mut Vec<f64>) {
+        let shape = |i: usize| self.static_shapes.get(i).zip(place).map_or(0.0, |(line, (p, f))| line.value(p, f));
+        values.extend((0..self.width).map(shape));
+    }
+
     /// Panel and fraction of a position [m].
     pub fn place(&self, x: f64) -> Place {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))

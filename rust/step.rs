@@ -168,6 +168,16 @@ pub enum Unsettled {
     AxlePositions,
 }
 
+impl Unsettled {
+    /// What did not settle, in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Unsettled::ContactForces => "contact forces",
+            Unsettled::AxlePositions => "axle positions",
+        }
+    }
+}
+
 /// The time step: constant coefficients of a run, and scratch so that stepping allocates nothing.
 #[derive(Debug, Clone)]
 pub struct Stepper<L> {
@@ -295,9 +305,9 @@ impl<L: Lane> Stepper<L> {
     }
 
     /// From one stepper for each sample, of the same vehicles, modes and scheme but for their numbers.
-    pub fn gather(each: &[Stepper<f64>]) -> Self {
-        let first = &each[0];
-        let numbers = |f: &dyn Fn(&Stepper<f64>) -> f64| L::from_fn(|i| f(&each[i]));
+    pub fn gather(each: &[&Stepper<f64>]) -> Self {
+        let first = each[0];
+        let numbers = |f: &dyn Fn(&Stepper<f64>) -> f64| L::from_fn(|i| f(each[i]));
         let zeros = |count: usize| vec![L::splat(0.0); count];
         let units = first.units.iter().enumerate().map(|(u, unit)| {
             let rigs: Vec<&Rig<f64>> = each.iter().map(|s| &s.units[u].rig).collect();
@@ -495,13 +505,13 @@ impl<L: Lane> Stepper<L> {
     fn couple(&mut self, geometry: &impl Geometry<L>) {
         let (modes, n) = (self.omega2.len(), self.elements.len());
         let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
-        for (k, shapes) in self.shapes.chunks_exact_mut(modes).enumerate() {
+        for (k, shapes) in self.shapes.chunks_exact_mut(modes.max(1)).enumerate() {
             geometry.shapes(k, shapes);
         }
         self.loaded.copy_from_slice(&self.free);
-        let receptances = self.receptance.chunks_exact_mut(modes);
+        let receptances = self.receptance.chunks_exact_mut(modes.max(1));
         for ((shapes, receptance), contact) in
-            self.shapes.chunks_exact(modes).zip(receptances).zip(&self.elements.contacts)
+            self.shapes.chunks_exact(modes.max(1)).zip(receptances).zip(&self.elements.contacts)
         {
             self.modal.apply(shapes, receptance);
             for (loaded, r) in self.loaded.iter_mut().zip(receptance.iter()) {
@@ -541,7 +551,8 @@ impl<L: Lane> Stepper<L> {
             }
             self.offset[k] = offset - dot(senses, &self.loaded);
             let row = &mut self.compliance[k * n..(k + 1) * n];
-            for (receptance, compliance) in self.receptance.chunks_exact(modes).zip(row.iter_mut()) {
+            row.fill(L::splat(0.0));
+            for (receptance, compliance) in self.receptance.chunks_exact(modes.max(1)).zip(row.iter_mut()) {
                 *compliance = dot(senses, receptance);
             }
         }
@@ -577,7 +588,7 @@ impl<L: Lane> Stepper<L> {
     fn move_bridge(&mut self, state: &mut State<L>) {
         let modes = self.omega2.len();
         self.forces.copy_from_slice(&self.loaded);
-        for (receptance, increment) in self.receptance.chunks_exact(modes).zip(&state.increments) {
+        for (receptance, increment) in self.receptance.chunks_exact(modes.max(1)).zip(&state.increments) {
             for (a, r) in self.forces.iter_mut().zip(receptance) {
                 *a = *a + *r * *increment;
             }

@@ -38,13 +38,12 @@ impl Steps {
         let length = model.shapes.mesh().length();
         let fastest = model.fastest_frequency(courses.iter().map(|course| course.vehicle));
         let limit = if settings.beta < 0.25 { 1.0 / (fastest * (0.25 - settings.beta).sqrt()) } else { f64::INFINITY };
-        let resolved = std::f64::consts::TAU / fastest / STEPS_PER_PERIOD;
+        let resolved = Steps::resolving(fastest);
         let uneven = courses.iter().any(|course| !course.road.is_smooth());
         let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
         let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
-        let way = model.narrowest_panel / STEPS_PER_PANEL;
         let finest = courses.iter().map(|course| course.road.finest()).fold(f64::INFINITY, f64::min);
-        let way = if uneven { way.min(WAY_PER_STEP).min(0.5 * finest) } else { way };
+        let way = Steps::longest_way(model.narrowest_panel, uneven, finest);
         let longest = settings.step.unwrap_or(resolved.min(way / speed));
         if longest > limit {
             let frequency = fastest / std::f64::consts::TAU;
@@ -102,6 +101,20 @@ impl Steps {
             }
             _ => Steps { h: span / count, count: count as usize, advance: None },
         })
+    }
+}
+
+impl Steps {
+    /// Longest step that resolves vibrations up to this circular frequency [rad/s], unless the user gives one [s].
+    pub fn resolving(fastest: f64) -> f64 {
+        std::f64::consts::TAU / fastest / STEPS_PER_PERIOD
+    }
+
+    /// Longest way per step unless the user gives a step [m]: for panels this narrow and, if the road is uneven, features
+    /// this fine.
+    pub fn longest_way(narrowest_panel: f64, uneven: bool, finest: f64) -> f64 {
+        let way = narrowest_panel / STEPS_PER_PANEL;
+        if uneven { way.min(WAY_PER_STEP).min(0.5 * finest) } else { way }
     }
 }
 

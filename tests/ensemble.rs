@@ -1,14 +1,18 @@
-//! Samples in lanes against crossings one by one.
+//! Samples in lanes against crossings one by one, and the contract: the same bits however the work is done.
 
 mod problems;
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use problems::*;
 use spanwise::analysis::Analysis;
+use spanwise::course::Passage;
+use spanwise::ensemble::record::Column;
+use spanwise::ensemble::sample::Samples;
 use spanwise::ensemble::simd::Isa;
-use spanwise::ensemble::{Outcome, Plan, Roads, Sample};
+use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::flexibility::Flexibility;
+use spanwise::influence::Quantity;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
@@ -17,59 +21,121 @@ use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
 use spanwise::settings::Settings;
 
-fn headline() -> (Arc<Analysis>, Arc<Synthesis>, Plan) {
-    let bridge = kishan_bridge();
-    let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let analysis = Analysis::new(&bridge, modes, &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
+const SEED: u64 = 7;
+
+const ALL: [Quantity; 6] = [
+    Quantity::Deflection,
+    Quantity::Moment,
+    Quantity::ShearLeft,
+    Quantity::ShearRight,
+    Quantity::Reaction,
+    Quantity::ClampMoment,
+];
+
+fn synthesis() -> Arc<Synthesis> {
     let spectrum = Spectrum::new(64e-6, 2.0, [0.01, 4.0]).unwrap();
-    let synthesis = Arc::new(Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(128.0)).unwrap());
-    let analysis = Arc::new(analysis);
-    let settings = Settings { approach: 30.0, ramp: 10.0, ..Settings::at_speed(22.86) };
-    let roads = Roads::Random { synthesis: Arc::clone(&synthesis), seed: 7 };
-    let plan = Plan::new(Arc::clone(&analysis), &kishan_vehicle(), &settings, 0.02286, roads).unwrap();
-    (analysis, synthesis, plan)
+    Arc::new(Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(128.0)).unwrap())
 }
 
-fn outcomes(plan: &Plan, samples: &[Sample], isa: Isa, threads: usize) -> Vec<Outcome> {
-    let all = Mutex::new(Vec::new());
-    plan.run(samples, isa, threads, |first, some| all.lock().unwrap().push((first, some)), || true).unwrap();
-    let mut all = all.into_inner().unwrap();
-    all.sort_by_key(|(first, _)| *first);
-    all.into_iter().flat_map(|(_, some)| some).collect()
+fn analysis(sections: usize) -> Arc<Analysis> {
+    let bridge = kishan_bridge();
+    let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
+    let length = bridge.length();
+    let sections: Vec<f64> = (0..sections).map(|i| length * i as f64 / (sections - 1) as f64).collect();
+    let recovery = Recovery::ForceSummation;
+    Arc::new(Analysis::new(&bridge, modes, &undamped(), Some(&sections), recovery, &mut || true).unwrap())
+}
+
+fn settings() -> Settings {
+    Settings { approach: 30.0, ramp: 10.0, ..Settings::at_speed(22.86) }
+}
+
+fn headline() -> Study {
+    let kinds = vec![vec![Passage::of(kishan_vehicle())]];
+    Study::new(analysis(25), kinds, settings(), Some((synthesis(), SEED)), Some(0.02286), &ALL).unwrap()
+}
+
+fn run(study: &Study, samples: &Samples, isa: Isa, threads: usize, chunk: usize) -> Run {
+    study.run(samples, &Workers { isa, threads, chunk }, &Progress::default()).unwrap()
+}
+
+/// Every sample against its own single crossing, to the bit.
+fn check_alone(study: &Study, samples: &Samples, run: &Run) {
+    let layout = run.results.layout;
+    for sample in 0..samples.count {
+        let number = samples.first + sample as u64;
+        let table = &run.tables[run.results.marches[sample] as usize];
+        let speed = samples.speed(sample, 0);
+        let road = match &study.own {
+            Some((own, seed)) => Arc::new(Road::sum([(*study.settings.road).clone(), own.road(*seed, number).into()])),
+            None => Arc::clone(&study.settings.road),
+        };
+        let step = Some(table.path.advance / speed);
+        let settings = Settings { road, step, speed, ..study.settings.clone() };
+        let passage = &study.kinds[samples.kind(sample)].passages[0];
+        let alone = study.analysis.cross(&passage.vehicle, &settings, &mut || true).unwrap();
+        let numbers = &run.results.numbers[sample * layout.width()..][..layout.width()];
+        let instants = &run.results.instants[sample * layout.instants()..][..layout.instants()];
+        let start = layout.range(Column::Responses).start;
+        for (place, &r) in study.look.chosen.iter().enumerate() {
+            let sides = [alone.envelope.dynamic.max[r], alone.envelope.dynamic.min[r]];
+            for (side, extreme) in sides.into_iter().enumerate() {
+                let at = side * layout.responses + place;
+                let value = numbers[start + at];
+                assert_eq!(value.to_bits(), extreme.value.to_bits(), "sample {sample}, response {r}: {value}, {extreme:?}");
+                let (time, position) = run.when(study, samples, sample, instants[at]);
+                assert_eq!([time, position], [extreme.time, extreme.position], "sample {sample}, response {r}");
+            }
+        }
+        let loads = layout.range(Column::Loads).start;
+        for k in 0..alone.history.axles {
+            let sides = [alone.axle_loads.dynamic.max[k], alone.axle_loads.dynamic.min[k]];
+            for (side, extreme) in sides.into_iter().enumerate() {
+                let at = side * layout.axles + k;
+                assert_eq!(numbers[loads + at].to_bits(), extreme.value.to_bits(), "sample {sample}, axle {k}");
+                let (time, _) = run.when(study, samples, sample, instants[2 * layout.responses + at]);
+                assert_eq!(time, extreme.time, "sample {sample}, axle {k}");
+            }
+        }
+    }
 }
 
 #[test]
 fn a_sample_is_a_crossing() {
-    let (analysis, synthesis, plan) = headline();
-    let samples: Vec<Sample> = (0..9).map(|number| Sample { number, speed: 20.0 + number as f64 }).collect();
-    let wide = outcomes(&plan, &samples, Isa::best(), 1);
-    assert_eq!(format!("{wide:?}"), format!("{:?}", outcomes(&plan, &samples, Isa::Scalar, 2)));
-    for (sample, outcome) in samples.iter().zip(&wide) {
-        let road = Arc::new(Road::from(synthesis.road(7, sample.number)));
-        let path = 30.0 + KISHAN_PATH as f64 * FOOT;
-        let step = Some(path / plan.steps() as f64 / sample.speed * (1.0 + 1e-12));
-        let settings = Settings { approach: 30.0, ramp: 10.0, road, step, ..Settings::at_speed(sample.speed) };
-        let alone = analysis.cross(&kishan_vehicle(), &settings, &mut || true).unwrap();
-        assert_eq!(alone.history.len(), plan.steps() + 1);
-        let mut apart = 0.0_f64;
-        for (r, found) in outcome.responses.iter().enumerate() {
-            let (max, min) = (alone.envelope.dynamic.max[r], alone.envelope.dynamic.min[r]);
-            let scale = max.value.abs().max(min.value.abs()).max(1e-12);
-            apart =
-                apart.max((found.max.value - max.value).abs() / scale).max((found.min.value - min.value).abs() / scale);
+    let study = headline();
+    let speeds: Vec<f64> = (0..9).map(|i| 15.0 + 3.0 * f64::from(i)).collect();
+    let samples = Samples { speeds, ..Samples::at_speed(100, 9, 1.0) };
+    let together = run(&study, &samples, Isa::Scalar, 1, 32);
+    assert!(together.results.failures.is_empty());
+    check_alone(&study, &samples, &together);
+}
+
+#[test]
+fn nothing_about_the_work_changes_a_bit() {
+    let study = headline();
+    let samples = Samples::at_speed(0, 70, 22.86);
+    let reference = run(&study, &samples, Isa::Scalar, 1, 32).results;
+    for isa in Isa::present() {
+        for threads in [1, 2, 7] {
+            for chunk in [1, 31, 32, 1000] {
+                let again = run(&study, &samples, isa, threads, chunk).results;
+                assert_eq!(again.hash(), reference.hash(), "{isa:?}, {threads} threads, chunks of {chunk}");
+            }
         }
-        println!("{}: {apart:e}", sample.number);
-        assert!(apart < 1e-8, "{}: {apart:e}", sample.number);
+    }
+    for sample in [0, 17, 69] {
+        let alone = run(&study, &Samples::at_speed(sample, 1, 22.86), Isa::Scalar, 1, 32).results;
+        assert_eq!(alone.digests[0], reference.digests[sample as usize]);
     }
 }
 
 #[test]
 fn speed() {
-    let (_, _, plan) = headline();
-    let samples: Vec<Sample> = (0..4000).map(|number| Sample { number, speed: 22.86 }).collect();
-    for (isa, threads) in [(Isa::best(), 1), (Isa::best(), 2), (Isa::Scalar, 1)] {
+    let study = headline();
+    let samples = Samples::at_speed(0, 4000, 22.86);
+    for (isa, threads) in [(Isa::chosen().unwrap(), 1), (Isa::chosen().unwrap(), 2), (Isa::Scalar, 1)] {
         let start = std::time::Instant::now();
-        outcomes(&plan, &samples, isa, threads);
-        println!("{isa:?} {threads}: {:.0}/s", samples.len() as f64 / start.elapsed().as_secs_f64());
+        run(&study, &samples, isa, threads, 32);
+        println!("{isa:?} {threads}: {:.0}/s", samples.count as f64 / start.elapsed().as_secs_f64());
     }
 }

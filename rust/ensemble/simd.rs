@@ -1,61 +1,113 @@
-//! The instruction set that a study runs on: the widest that the processor has, unless told otherwise.
+//! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
 
-use super::{Outcome, Plan, Sample};
 use crate::error::Error;
+use crate::lane::Lane;
 use crate::lane::wide::Wide;
 
-/// Samples side by side.
-const SAMPLES: usize = 8;
+/// Samples side by side in one group of lanes.
+pub const SAMPLES: usize = 8;
+
+/// The environment variable that chooses another than the widest.
+pub const VARIABLE: &str = "SPANWISE_ISA";
 
 /// An instruction set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Isa {
-    /// None in particular.
+    /// What every processor of its kind has: on x86-64 SSE2, on AArch64 NEON.
     Scalar,
     /// AVX2.
     Avx2,
+    /// AVX-512.
+    Avx512,
+    /// NEON, which every AArch64 processor has.
+    Neon,
 }
 
 impl Isa {
-    /// The widest that the processor has.
-    pub fn best() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if pulp::x86::V3::try_new().is_some() {
-            return Isa::Avx2;
+    /// All of them, from the narrowest to the widest.
+    pub const ALL: [Isa; 4] = [Isa::Scalar, Isa::Neon, Isa::Avx2, Isa::Avx512];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Isa::Scalar => "scalar",
+            Isa::Avx2 => "avx2",
+            Isa::Avx512 => "avx512",
+            Isa::Neon => "neon",
         }
-        Isa::Scalar
+    }
+
+    /// Whether this processor has it.
+    pub fn is_present(self) -> bool {
+        match self {
+            Isa::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => pulp::x86::V3::try_new().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => pulp::x86::V4::try_new().is_some(),
+            #[cfg(target_arch = "aarch64")]
+            Isa::Neon => true,
+            #[allow(unreachable_patterns)] // on some processors
+            _ => false,
+        }
+    }
+
+    /// The widest that the processor has, or the one that the environment asks for.
+    pub fn chosen() -> Result<Self, Error> {
+        match std::env::var(VARIABLE) {
+            Ok(name) if !name.is_empty() => Isa::named(&name),
+            _ => Ok(Isa::present().last().unwrap_or(Isa::Scalar)),
+        }
+    }
+
+    /// Those that the processor has, from the narrowest to the widest.
+    pub fn present() -> impl Iterator<Item = Self> {
+        Isa::ALL.into_iter().filter(|isa| isa.is_present())
+    }
+
+    fn named(name: &str) -> Result<Self, Error> {
+        Isa::present().find(|isa| isa.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = Isa::present().map(Isa::name).collect();
+            let allowed = format!("this processor has {}", names.join(", "));
+            Error::input(VARIABLE, format!("\"{name}\""), allowed)
+        })
     }
 }
 
-/// Samples side by side.
-pub fn samples(_isa: Isa) -> usize {
-    SAMPLES
+/// What is compiled once for each instruction set.
+pub trait Work {
+    /// What comes of it.
+    type Output;
+
+    /// Does it with samples side by side in L; must be inlined, with all that it calls in its inner loops.
+    fn run<L: Lane>(self) -> Self::Output;
 }
 
-struct Block<'a> {
-    plan: &'a Plan,
-    samples: &'a [Sample],
-}
+struct Compiled<W>(W);
 
-#[cfg(target_arch = "x86_64")]
-impl pulp::NullaryFnOnce for Block<'_> {
-    type Output = Result<Vec<Outcome>, Error>;
+impl<W: Work> pulp::NullaryFnOnce for Compiled<W> {
+    type Output = W::Output;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        self.plan.block::<Wide<SAMPLES>>(self.samples)
+    fn call(self) -> W::Output {
+        self.0.run::<Wide<SAMPLES>>()
     }
 }
 
-/// Runs one block.
-pub fn run(isa: Isa, plan: &Plan, samples: &[Sample]) -> Result<Vec<Outcome>, Error> {
-    let block = Block { plan, samples };
-    match isa {
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => match pulp::x86::V3::try_new() {
-            Some(simd) => simd.vectorize(block),
-            None => Err(Error::input("SPANWISE_SIMD", "avx2", "this processor does not have it")),
-        },
-        _ => block.plan.block::<Wide<SAMPLES>>(block.samples),
+/// Does the work with an instruction set, or without any in particular where the processor does not have it.
+pub fn dispatch<W: Work>(isa: Isa, work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if isa == Isa::Avx512
+            && let Some(simd) = pulp::x86::V4::try_new()
+        {
+            return simd.vectorize(Compiled(work));
+        }
+        if isa == Isa::Avx2
+            && let Some(simd) = pulp::x86::V3::try_new()
+        {
+            return simd.vectorize(Compiled(work));
+        }
     }
+    pulp::NullaryFnOnce::call(Compiled(work))
 }

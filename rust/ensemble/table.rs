@@ -1,30 +1,34 @@
-//! What all samples share that move alike: where the axles are at every step, what lies under them, what it does.
+//! What all samples share that move alike: where the axles are at every step, what lies under them, what they do.
 
+use super::look::Look;
 use crate::influence::{Quantity, Responses};
-use crate::path::ModeShapes;
+use crate::path::{ModeShapes, Pavement, Share};
 use crate::recovery::{Place, Rows};
+use crate::road::Road;
+use crate::road::random::Synthesis;
 use crate::road::spline::Taps;
 use crate::step::Surface;
 
 /// Steps that are recovered together, so that what they need stays near the processor.
 pub const CHUNK: usize = 64;
 
-/// One step of one axle.
-#[derive(Debug, Clone, Copy)]
-pub struct Stand {
-    /// Position along the bridge [m].
-    pub x: f64,
-    /// What lies below it.
-    pub below: Below,
-}
+/// Most influence numbers kept ready; beyond that they are worked out again for each block of samples.
+const READY: usize = 1 << 23;
 
 /// The road below an axle.
 #[derive(Debug, Clone, Copy)]
 pub enum Below {
     /// The same for every sample.
     Given(Surface<f64>),
-    /// The sample's own: which coefficients count, and how far it has faded in, with the first derivative of that.
-    Own(Taps, [f64; 2]),
+    /// With a part of the sample's own.
+    Own {
+        /// Elevation, slope and curvature of what all share.
+        given: [f64; 3],
+        /// Which coefficients of the sample's part count.
+        taps: Taps,
+        /// What of the sum counts.
+        share: Share,
+    },
 }
 
 /// A moment between two steps at which extremes must be looked for: an axle on a section or on an end of the bridge.
@@ -38,99 +42,180 @@ pub struct Stop {
     pub axle: usize,
     /// If the load of that axle and the modal accelerations jump, the step whose they are.
     pub jump: Option<usize>,
-    /// Responses to look at, with their influence of each axle.
-    pub responses: Vec<(usize, Vec<f64>)>,
-    /// The shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
+    /// Rows to look at.
+    pub rows: Vec<usize>,
+    /// Influence of each axle on these, row by row.
+    pub influence: Vec<f64>,
+    /// What static loads of one at the axles make of the coordinates, axle by axle.
+    pub statics: Vec<f64>,
+    /// The row of the shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
     pub tip: Option<(usize, f64)>,
     /// Position of the front axle [m].
     pub position: f64,
 }
 
+/// How axles move in equal steps of space.
+#[derive(Debug, Clone)]
+pub struct Advance {
+    /// Front axle at the start [m].
+    pub start: f64,
+    /// Way per step [m].
+    pub advance: f64,
+    /// Distance of each axle behind the first [m].
+    pub behind: Vec<f64>,
+    /// Number of steps until the last axle has left.
+    pub steps: usize,
+    /// Steps beyond these during which axles still roll on the road behind the bridge, if they are followed.
+    pub beyond: usize,
+}
+
+impl Advance {
+    /// Position of an axle after so many steps [m].
+    #[inline(always)]
+    pub fn x(&self, step: usize, axle: usize) -> f64 {
+        self.advance * step as f64 + self.start - self.behind[axle]
+    }
+}
+
 /// The shared geometry.
 #[derive(Debug, Clone)]
 pub struct Table {
-    /// Number of axles.
-    pub axles: usize,
+    /// How the axles move.
+    pub path: Advance,
     /// Number of modes.
     pub modes: usize,
-    /// Number of steps.
-    pub steps: usize,
-    /// By step and axle.
-    pub stands: Vec<Stand>,
+    /// Where axles stand on the bridge, by step and axle.
+    places: Vec<Place>,
+    /// What lies below them.
+    pub below: Vec<Below>,
     /// Φ⁰ and, if the step asks for them, its first two derivatives, by step, axle and mode.
     pub shapes: Vec<f64>,
     /// Derivatives held, the value included.
     pub kinds: usize,
+    /// What static loads of one at the axles make of the coordinates, by step, axle and coordinate.
+    pub statics: Vec<f64>,
     /// First step with an axle on the bridge, which is at rest till then.
     pub first: usize,
-    /// Influence of each axle load on each response: by chunk of steps from `first` on, response, step and axle.
-    pub influence: Vec<Vec<f64>>,
+    /// Influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
+    /// [`Table::influence`].
+    ready: Option<Vec<Vec<f64>>>,
     /// Moments between steps, in order.
     pub stops: Vec<Stop>,
 }
 
+/// The roads of a study: a part that is the same for all samples, and a random one of each sample's own.
+#[derive(Debug, Clone, Copy)]
+pub struct Ground<'a> {
+    /// What all share, on its way.
+    pub pavement: &'a Pavement<'a>,
+    /// What the samples' own roads have in common.
+    pub own: Option<&'a Synthesis>,
+}
+
+impl Ground<'_> {
+    fn below(&self, x: f64) -> Below {
+        let Some(own) = self.own else { return Below::Given(self.pavement.at(x)) };
+        let (share, x) = self.pavement.share(x);
+        if share == Share::Level {
+            return Below::Given(Surface::LEVEL);
+        }
+        let road: &Road = self.pavement.road;
+        let given = road.at(x);
+        let taps = Taps::new(x, own.points(), own.period());
+        Below::Own { given: [given.elevation, given.slope, given.curvature], taps, share }
+    }
+}
+
 impl Table {
-    /// For the axles at `x(step, axle)` [m] in `steps` steps, on a bridge of which `rows` are looked at.
-    #[allow(clippy::too_many_arguments)] // each is one thing
+    /// For axles on their `path` over a bridge of which `look` is looked at; with `slopes` of the modes if the step asks
+    /// for them.
     pub fn new(
+        path: Advance,
         shapes: &ModeShapes,
-        rows: &Rows,
-        responses: &Responses,
-        axles: usize,
-        steps: usize,
-        x: impl Fn(usize, usize) -> f64,
+        (rows, responses, look): (&Rows, &Responses, &Look),
         slopes: bool,
-        below: impl Fn(f64) -> Below,
+        ground: Ground<'_>,
     ) -> Self {
-        let kinds = if slopes { 3 } else { 1 };
-        let modes = shapes.modes();
+        let (kinds, axles, steps) = (if slopes { 3 } else { 1 }, path.behind.len(), path.steps);
         let mut table = Table {
-            axles,
-            modes,
-            steps,
-            stands: Vec::with_capacity((steps + 1) * axles),
-            shapes: Vec::with_capacity((steps + 1) * axles * modes * kinds),
+            modes: shapes.modes(),
+            places: Vec::with_capacity((steps + 1) * axles),
+            below: Vec::with_capacity((steps + path.beyond + 1) * axles),
+            shapes: Vec::with_capacity((steps + path.beyond + 1) * axles * shapes.modes() * kinds),
             kinds,
+            statics: Vec::new(),
             first: steps,
-            influence: Vec::new(),
+            ready: None,
             stops: Vec::new(),
+            path,
         };
-        for step in 0..=steps {
+        for step in 0..=steps + table.path.beyond {
             for axle in 0..axles {
-                let x = x(step, axle);
-                table.stands.push(Stand { x, below: below(x) });
+                let x = table.path.x(step, axle);
+                let place = rows.place(x);
+                table.below.push(ground.below(x));
                 shapes.extend_at(x, kinds, &mut table.shapes);
-                if rows.place(x).is_some() {
+                table.places.push(place);
+                if step <= steps {
+                    rows.extend_static(place, &mut table.statics);
+                }
+                if place.is_some() {
                     table.first = table.first.min(step);
                 }
             }
         }
-        let all = rows.len();
-        for from in (table.first..=steps).step_by(CHUNK) {
-            let count = CHUNK.min(steps + 1 - from);
-            let mut chunk = vec![0.0; all * count * axles];
-            for step in 0..count {
-                for axle in 0..axles {
-                    if let Some(place) = rows.place(table.stands[(from + step) * axles + axle].x) {
-                        for r in 0..all {
-                            chunk[(r * count + step) * axles + axle] = rows.influence_of(r, place);
-                        }
-                    }
-                }
-            }
-            table.influence.push(chunk);
+        let all = look.rows.len() * axles * (steps + 1 - table.first);
+        if all <= READY {
+            let chunks = (table.first..=steps).step_by(CHUNK);
+            let filled = chunks.map(|from| {
+                let mut chunk = Vec::new();
+                table.fill(from, rows, look, &mut chunk);
+                chunk
+            });
+            table.ready = Some(filled.collect());
         }
-        table.find_stops(rows, responses);
+        table.find_stops(rows, responses, look);
         table
     }
 
-    /// Position of an axle at a step [m].
-    pub fn x(&self, step: usize, axle: usize) -> f64 {
-        self.stands[step * self.axles + axle].x
+    /// Number of axles.
+    pub fn axles(&self) -> usize {
+        self.path.behind.len()
+    }
+
+    /// The last step that the table knows; beyond it nothing changes.
+    pub fn last(&self) -> usize {
+        self.path.steps + self.path.beyond
+    }
+
+    /// Steps of the chunk that begins at a step.
+    fn count(&self, from: usize) -> usize {
+        CHUNK.min(self.path.steps + 1 - from)
+    }
+
+    /// Influence of the axle loads on the rows in the chunk that begins at a step on the bridge: by row, step and axle.
+    pub fn influence<'a>(&'a self, from: usize, rows: &Rows, look: &Look, scratch: &'a mut Vec<f64>) -> &'a [f64] {
+        match &self.ready {
+            Some(ready) => &ready[(from - self.first) / CHUNK],
+            None => {
+                self.fill(from, rows, look, scratch);
+                scratch
+            }
+        }
+    }
+
+    fn fill(&self, from: usize, rows: &Rows, look: &Look, chunk: &mut Vec<f64>) {
+        chunk.clear();
+        let axles = self.axles();
+        let places = &self.places[from * axles..(from + self.count(from)) * axles];
+        for row in &look.rows {
+            let influence = |place: &Place| place.map_or(0.0, |place| rows.influence_of(row.response, place));
+            chunk.extend(places.iter().map(influence));
+        }
     }
 
     /// Every passing of a section or an end, as [`crate::survey`] looks for them.
-    fn find_stops(&mut self, rows: &Rows, responses: &Responses) {
+    fn find_stops(&mut self, rows: &Rows, responses: &Responses, look: &Look) {
         let (nodes, last) = (rows.mesh().nodes(), rows.mesh().panels());
         let inner = responses.sections().iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
         let mut places: Vec<(usize, f64, Option<usize>)> =
@@ -138,56 +223,58 @@ impl Table {
         places.extend([(0, nodes[0], None), (last, nodes[last], None)]);
         places.sort_unstable_by_key(|place| place.0);
         let shear = |quantity: Quantity, node: usize, sign: f64| {
-            let section = responses.sections().iter().position(|&s| s == node);
-            section.map(|s| (responses.range(quantity).start + s, sign))
+            let section = responses.sections().iter().position(|&s| s == node)?;
+            Some((look.row(responses.range(quantity).start + section)?, sign))
         };
         let tips = [shear(Quantity::ShearRight, 0, -1.0), shear(Quantity::ShearLeft, last, 1.0)];
         let sections = responses.sections().len();
+        // Deflection, moment and shears of each section, and all rows for the ends.
+        let own = |section: usize| {
+            let mut rows: Vec<usize> = (0..4).filter_map(|quantity| look.row(quantity * sections + section)).collect();
+            rows.dedup();
+            rows
+        };
+        let of_sections: Vec<Vec<usize>> = (0..sections).map(own).collect();
+        let every: Vec<usize> = (0..look.rows.len()).collect();
+        let path = &self.path;
+        let axles = path.behind.len();
         let mut stops = Vec::new();
         let mut ahead: Vec<usize> =
-            (0..self.axles).map(|axle| places.partition_point(|place| place.1 <= self.x(0, axle))).collect();
-        for step in 1..=self.steps {
-            for axle in 0..self.axles {
+            (0..axles).map(|axle| places.partition_point(|place| place.1 <= path.x(0, axle))).collect();
+        for step in 1..=path.steps {
+            for axle in 0..axles {
                 while let Some(&(node, at, section)) =
-                    places.get(ahead[axle]).filter(|place| place.1 <= self.x(step, axle))
+                    places.get(ahead[axle]).filter(|place| place.1 <= path.x(step, axle))
                 {
                     ahead[axle] += 1;
-                    let (from, to) = (self.x(step - 1, axle), self.x(step, axle));
+                    let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
                     let fraction = (at - from) / (to - from);
                     let between = |k: usize| {
-                        let (b, a) = (self.x(step - 1, k), self.x(step, k));
+                        let (b, a) = (path.x(step - 1, k), path.x(step, k));
                         b + fraction * (a - b)
                     };
-                    let mut standing: Vec<Place> = (0..self.axles).map(|k| rows.place(between(k))).collect();
+                    let mut standing: Vec<Place> = (0..axles).map(|k| rows.place(between(k))).collect();
                     let left = node.checked_sub(1).map(|panel| (panel, 1.0));
                     let right = (node < last).then_some((node, 0.0));
                     let held = node != 0 && node != last || responses.supported(node);
+                    let asked = section.map_or(&every, |section| &of_sections[section]);
                     for (side, row) in [(left, step - 1), (right, step)] {
                         standing[axle] = side;
-                        let asked: Vec<usize> = match section {
-                            Some(s) => (0..4).map(|quantity| quantity * sections + s).collect(),
-                            None => (0..rows.len()).collect(),
-                        };
-                        let mut found: Vec<(usize, Vec<f64>)> =
-                            asked.into_iter().map(|r| (r, vec![0.0; self.axles])).collect();
-                        for (k, place) in standing.iter().enumerate() {
-                            if let Some(place) = *place {
-                                for (r, influence) in &mut found {
-                                    influence[k] = rows.influence_of(*r, place);
-                                }
-                            }
-                        }
-                        let tip = match (node, section, side) {
-                            (_, None, Some(_)) => tips[usize::from(node != 0)],
-                            _ => None,
-                        };
+                        let influence = asked.iter().flat_map(|&r| {
+                            let response = look.rows[r].response;
+                            standing.iter().map(move |place| place.map_or(0.0, |p| rows.influence_of(response, p)))
+                        });
+                        let mut statics = Vec::with_capacity(axles * rows.width());
+                        standing.iter().for_each(|place| rows.extend_static(*place, &mut statics));
                         stops.push(Stop {
+                            statics,
                             step,
                             fraction,
                             axle,
                             jump: (!held).then_some(row),
-                            responses: found,
-                            tip,
+                            influence: influence.collect(),
+                            rows: asked.clone(),
+                            tip: (section.is_none() && side.is_some()).then(|| tips[usize::from(node != 0)]).flatten(),
                             position: between(0),
                         });
                     }

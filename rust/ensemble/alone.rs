@@ -1,0 +1,175 @@
+//! Samples whose motion is their own: each a single crossing, through the same step.
+
+use std::sync::Arc;
+
+use super::record::{Column, Layout, Record};
+use super::sample::{Parameter, Samples};
+use super::Study;
+use crate::analysis::Analysis;
+use crate::course::Passage;
+use crate::crossing::{ModalBridge, cross_all};
+use crate::envelope::{Extremes, axle_loads};
+use crate::error::Error;
+use crate::history::History;
+use crate::modal::ModalDamping;
+use crate::road::Road;
+use crate::settings::Settings;
+use crate::survey::survey;
+
+/// The bridge of a sample, and what its rows are to multiply A and Ȧ by.
+pub struct Scaled {
+    /// Circular frequencies [rad/s].
+    pub omega: Vec<f64>,
+    /// Damping in modes.
+    pub damping: ModalDamping,
+    /// Factor of the stiffness, on A in the rows; its inverse is that of deflections.
+    pub stiffness: f64,
+    /// How the damping matrix grows, on Ȧ in the rows.
+    pub rates: f64,
+}
+
+impl Scaled {
+    /// That of a sample, if it is varied.
+    pub fn of(model: &ModalBridge, samples: &Samples, sample: usize) -> Option<Self> {
+        let stiffness = samples.factor(Parameter::BridgeStiffness, sample, 0);
+        let damping = samples.factor(Parameter::BridgeDamping, sample, 0);
+        if stiffness.is_none() && damping.is_none() {
+            return None;
+        }
+        let (stiffness, factor) = (stiffness.unwrap_or(1.0), damping.unwrap_or(1.0));
+        let root = stiffness.sqrt();
+        let (damping, rates) = match &model.damping {
+            // Ratios to critical damping, which goes with the frequencies.
+            ModalDamping::Classical(ratios) => {
+                (ModalDamping::Classical(ratios.iter().map(|z| z * factor).collect()), root * factor)
+            }
+            ModalDamping::Coupled(d) => (ModalDamping::Coupled(faer::Scale(factor) * d), factor),
+        };
+        Some(Scaled { omega: model.omega.iter().map(|w| w * root).collect(), damping, stiffness, rates })
+    }
+}
+
+/// The vehicles of a sample on their ways.
+pub fn passages(study: &Study, samples: &Samples, sample: usize) -> Result<Vec<Passage>, Error> {
+    let mut before = [0, 0];
+    let mut passages = study.kinds[samples.kind(sample)].passages.clone();
+    for (v, passage) in passages.iter_mut().enumerate() {
+        let counts = [passage.vehicle.bodies().len(), passage.vehicle.assembly().contacts.len()];
+        if !samples.factors.is_empty() {
+            passage.vehicle = samples.vehicle(&passage.vehicle, sample, before)?;
+        }
+        before = [before[0] + counts[0], before[1] + counts[1]];
+        if !study.brings_speeds(passage) {
+            passage.speed = passage.speed.or(Some(samples.speed(sample, v)));
+        }
+    }
+    Ok(passages)
+}
+
+/// Fills in the record of one sample; its axles' times and positions with it.
+pub fn cross(
+    study: &Study,
+    layout: &Layout,
+    samples: &Samples,
+    sample: usize,
+    record: &mut Record<'_>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<(), Error> {
+    let passages = passages(study, samples, sample)?;
+    let road = match &study.own {
+        None => Arc::clone(&study.settings.road),
+        Some((synthesis, seed)) => {
+            let own = Road::from(synthesis.road(*seed, samples.first + sample as u64));
+            Arc::new(Road::sum([(*study.settings.road).clone(), own]))
+        }
+    };
+    let settings = Settings { road, ..study.settings.clone() };
+    let Analysis { model, rows, responses, .. } = &*study.analysis;
+    let scaled = Scaled::of(model, samples, sample);
+    let own_model;
+    let model = match &scaled {
+        None => model,
+        Some(Scaled { omega, damping, .. }) => {
+            own_model = ModalBridge { omega: omega.clone(), damping: damping.clone(), ..model.clone() };
+            &own_model
+        }
+    };
+    let mut history = cross_all(model, &passages, &settings, go_on)?;
+    if let Some(Scaled { stiffness, rates, .. }) = scaled {
+        history.a.iter_mut().for_each(|a| *a *= stiffness);
+        history.a_dot.iter_mut().for_each(|v| *v *= rates);
+    }
+    let packed = rows.pack_history(&history);
+    let envelope = survey(&history, rows, &packed, responses, go_on)?;
+    let loads = axle_loads(&history).dynamic;
+    let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
+    let chosen: Vec<(usize, f64)> =
+        (study.look.chosen.iter().zip(&study.look.deflections)).map(|(&r, &d)| (r, if d { stiffness } else { 1.0 })).collect();
+    record.numbers.fill(f64::NAN);
+    record.instants.fill(0);
+    let mut put = |column: Column, offset: usize, values: &mut dyn Iterator<Item = f64>| {
+        let range = layout.range(column);
+        record.numbers[range.start + offset..range.end].iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
+    };
+    let (r, a) = (layout.responses, layout.axles);
+    let sides = |extremes: &Extremes| [extremes.max.clone(), extremes.min.clone()];
+    for (side, extremes) in sides(&envelope.dynamic).iter().enumerate() {
+        put(Column::Responses, side * r, &mut chosen.iter().map(|&(r, k)| extremes[r].value / k));
+        put(Column::Times, side * r, &mut chosen.iter().map(|&(r, _)| extremes[r].time));
+        put(Column::Positions, side * r, &mut chosen.iter().map(|&(r, _)| extremes[r].position));
+    }
+    for (side, extremes) in sides(&envelope.at_rest).iter().enumerate() {
+        put(Column::Statics, side * r, &mut chosen.iter().map(|&(r, k)| extremes[r].value / k));
+    }
+    for (side, extremes) in sides(&loads).iter().enumerate() {
+        put(Column::Loads, side * a, &mut extremes.iter().map(|e| e.value));
+        put(Column::Times, 2 * r + side * a, &mut extremes.iter().map(|e| e.time));
+        put(Column::Positions, 2 * r + side * a, &mut extremes.iter().map(|e| e.position));
+    }
+    ride(&history, study.analysis.rows.mesh().length(), &passages, layout, &mut put, &mut record.instants[..]);
+    Ok(())
+}
+
+/// Contact forces and accelerations; sums from the first axle on the bridge to the last.
+fn ride(
+    history: &History,
+    length: f64,
+    passages: &[Passage],
+    layout: &Layout,
+    put: &mut dyn FnMut(Column, usize, &mut dyn Iterator<Item = f64>),
+    instants: &mut [u32],
+) {
+    let axles = history.axles;
+    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| (0.0..=length).contains(x));
+    let first = (0..history.len()).find(|&i| on(i)).unwrap_or(0);
+    let there: Vec<usize> = (first..=(first..history.len()).rev().find(|&i| on(i)).unwrap_or(first)).collect();
+    let count = there.len().max(1) as f64;
+    let coefficient = |k: usize| {
+        let deviation = |i: usize| history.loads[i * axles + k] - history.static_loads[k];
+        let mean = there.iter().map(|&i| deviation(i)).sum::<f64>() / count;
+        let squares = there.iter().map(|&i| deviation(i).powi(2)).sum::<f64>() / count;
+        (squares - mean * mean).max(0.0).sqrt() / history.static_loads[k]
+    };
+    put(Column::LoadCoefficients, 0, &mut (0..axles).map(coefficient));
+    let lifts = history.lift_offs();
+    let of = |k: usize| lifts.iter().filter(move |lift| lift.axle == k);
+    put(Column::Aloft, 0, &mut (0..axles).map(|k| of(k).map(|lift| lift.to - lift.from).sum()));
+    let counts = instants.len() - layout.axles;
+    for (k, slot) in instants[counts..counts + axles].iter_mut().enumerate() {
+        *slot = of(k).count() as u32;
+    }
+    let mut body = 0;
+    for (columns, passage) in history.vehicles.iter().zip(passages) {
+        for [heave, _] in &passage.vehicle.assembly().bodies {
+            let acceleration = |i: usize| -> f64 {
+                let row = &history.motion[i * history.motion_width()..][columns.motion.clone()];
+                heave.iter().zip(row.iter().skip(2).step_by(3)).map(|(b, a)| b * a).sum()
+            };
+            let largest = (0..history.len()).fold(0.0_f64, |m, i| m.max(acceleration(i).abs()));
+            let squares: f64 = there.iter().map(|&i| acceleration(i).powi(2)).sum();
+            put(Column::Accelerations, body, &mut std::iter::once(largest));
+            put(Column::Vibrations, body, &mut std::iter::once((squares / count).sqrt()));
+            body += 1;
+        }
+    }
+}

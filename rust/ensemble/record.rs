@@ -1,0 +1,168 @@
+//! What a sample leaves behind: one row of numbers and one of instants, and a mark if it failed.
+
+use std::ops::Range;
+
+use crate::error::Error;
+
+/// Where everything stands in a sample's rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// Responses looked at.
+    pub responses: usize,
+    /// Axles, at most.
+    pub axles: usize,
+    /// Bodies, at most.
+    pub bodies: usize,
+    /// Whether each sample has static extremes of its own.
+    pub own_statics: bool,
+    /// Whether times and positions of the extremes are numbers, not instants that all samples share.
+    pub own_times: bool,
+}
+
+/// A column of numbers in [`Layout`]; of extremes the largest come first, then the smallest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Extremes of the responses.
+    Responses,
+    /// Extremes of the axle loads [N].
+    Loads,
+    /// Standard deviation of each axle load on the bridge by its static value [-].
+    LoadCoefficients,
+    /// Time each axle was off the road [s].
+    Aloft,
+    /// Largest magnitude of the vertical acceleration of each body [m/s²].
+    Accelerations,
+    /// Root mean square of the same on the bridge [m/s²].
+    Vibrations,
+    /// Extremes of the static responses, if each sample has its own.
+    Statics,
+    /// Times of the extremes of responses, then of loads, if they are the sample's own [s].
+    Times,
+    /// Positions of the front axle at these [m].
+    Positions,
+}
+
+impl Layout {
+    /// Pairs of extremes: largest of all, smallest of all.
+    fn extremes(&self) -> usize {
+        2 * (self.responses + self.axles)
+    }
+
+    /// Where a column is among a sample's numbers.
+    pub fn range(&self, column: Column) -> Range<usize> {
+        let own = |own: bool, width: usize| if own { width } else { 0 };
+        let widths = [
+            (Column::Responses, 2 * self.responses),
+            (Column::Loads, 2 * self.axles),
+            (Column::LoadCoefficients, self.axles),
+            (Column::Aloft, self.axles),
+            (Column::Accelerations, self.bodies),
+            (Column::Vibrations, self.bodies),
+            (Column::Statics, own(self.own_statics, 2 * self.responses)),
+            (Column::Times, own(self.own_times, self.extremes())),
+            (Column::Positions, own(self.own_times, self.extremes())),
+        ];
+        let mut start = 0;
+        for (each, width) in widths {
+            if each == column {
+                return start..start + width;
+            }
+            start += width;
+        }
+        start..start
+    }
+
+    /// Numbers of a sample.
+    pub fn width(&self) -> usize {
+        self.range(Column::Positions).end
+    }
+
+    /// Instants of a sample: of the extremes of responses and loads in the order of the numbers, then how often each axle
+    /// left the road.
+    pub fn instants(&self) -> usize {
+        self.extremes() + self.axles
+    }
+}
+
+/// A sample's rows, to be filled.
+#[derive(Debug)]
+pub struct Record<'a> {
+    /// Numbers, after [`Layout::range`].
+    pub numbers: &'a mut [f64],
+    /// Instants, after [`Layout::instants`]; see [`instant_of_stop`].
+    pub instants: &'a mut [u32],
+}
+
+/// The bit that tells a moment between two steps from a step.
+const STOP: u32 = 1 << 31;
+
+/// The instant at which an axle passes: a stop of the table.
+pub fn instant_of_stop(stop: usize) -> u32 {
+    STOP | stop as u32
+}
+
+/// The stop, if the instant is one, or else the step.
+pub fn stop_or_step(instant: u32) -> Result<usize, usize> {
+    if instant & STOP == 0 { Err(instant as usize) } else { Ok((instant & !STOP) as usize) }
+}
+
+impl Record<'_> {
+    /// Marks the sample as one without a result.
+    pub fn forget(&mut self) {
+        self.numbers.fill(f64::NAN);
+        self.instants.fill(0);
+    }
+
+    /// Fingerprint of the rows, the same on every machine.
+    pub fn digest(&self) -> u64 {
+        let mut hasher = xxhash_rust::xxh3::Xxh3::new();
+        for number in self.numbers.iter() {
+            // All that is not a number is one and the same.
+            let bits = if number.is_nan() { f64::NAN.to_bits() } else { number.to_bits() };
+            hasher.update(&bits.to_le_bytes());
+        }
+        for instant in self.instants.iter() {
+            hasher.update(&instant.to_le_bytes());
+        }
+        hasher.digest()
+    }
+}
+
+/// A sample that failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// Its place among the samples of the run.
+    pub sample: usize,
+    /// The step in which it failed, if it came so far.
+    pub step: Option<usize>,
+    /// Why.
+    pub cause: Error,
+}
+
+/// What a run leaves, in the order of its samples.
+#[derive(Debug, Clone)]
+pub struct Results {
+    /// Where things are in the rows.
+    pub layout: Layout,
+    /// Numbers, sample after sample.
+    pub numbers: Vec<f64>,
+    /// Instants, sample after sample.
+    pub instants: Vec<u32>,
+    /// By sample, the march it took: which of the study's tables and refinements.
+    pub marches: Vec<u32>,
+    /// Fingerprint of every sample.
+    pub digests: Vec<u64>,
+    /// Samples without a result, in order.
+    pub failures: Vec<Failure>,
+}
+
+impl Results {
+    /// Fingerprint of all samples together.
+    pub fn hash(&self) -> u64 {
+        let mut hasher = xxhash_rust::xxh3::Xxh3::new();
+        for digest in &self.digests {
+            hasher.update(&digest.to_le_bytes());
+        }
+        hasher.digest()
+    }
+}
