@@ -10,11 +10,12 @@ PY     := $(VENV)/bin/python
 PROFILE := --release
 
 TOOLS     := $(VENV)/.tools.stamp
+PEERS     := $(VENV)/.peers.stamp
 EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench docs clean
+.PHONY: build example test check bench bench-compare docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -51,6 +52,14 @@ check: $(EXTENSION)
 bench: $(EXTENSION)
 	$(CARGO) bench --locked
 	$(PY) benches/python.py
+
+# Against what others would write, which takes packages that nothing else needs.
+bench-compare: $(EXTENSION) $(PEERS)
+	$(PY) benches/peers/numba_headline.py
+
+$(PEERS): $(TOOLS) benches/requirements-peers.txt
+	$(PY) -m pip install --quiet --disable-pip-version-check -r benches/requirements-peers.txt
+	touch $@
 
 # With the feature `python` only to reuse what clippy compiled.
 docs: $(TOOLS)
