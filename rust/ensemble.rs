@@ -177,9 +177,10 @@ impl Plan {
         Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h, beta, gravity, lift_off })
     }
 
-    /// One block of samples in the lanes of L; missing ones are filled up with the last.
+    /// One block of samples in the lanes of L; missing ones are filled up with the last. Public so that a lane of another
+    /// kind, such as one that counts, goes through what the samples of a study go through.
     #[inline(always)]
-    fn block<L: Lane>(&self, samples: &[Sample]) -> Result<Vec<Outcome>, Error> {
+    pub fn block<L: Lane>(&self, samples: &[Sample]) -> Result<Vec<Outcome>, Error> {
         let of = |lane: usize| &samples[lane.min(samples.len() - 1)];
         let steppers: Vec<Stepper<f64>> = (0..L::SAMPLES).map(|lane| self.stepper(of(lane), false)).collect();
         let starters: Vec<Stepper<f64>> = (0..L::SAMPLES).map(|lane| self.stepper(of(lane), true)).collect();
