@@ -14,7 +14,7 @@ EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench docs clean
+.PHONY: build example test check bench instructions instructions-record docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -51,6 +51,14 @@ check: $(EXTENSION)
 bench: $(EXTENSION)
 	$(CARGO) bench --locked
 	$(PY) benches/python.py
+
+# Fails if a crossing takes more instructions than benches/instructions.toml says. Built as `cargo test $(PROFILE)`
+# builds: bench and release profile are the same, and so share all that is compiled.
+instructions: $(TOOLS)
+	CARGO="$(CARGO)" $(PY) benches/instructions.py
+
+instructions-record: $(TOOLS)
+	CARGO="$(CARGO)" $(PY) benches/instructions.py --record
 
 # With the feature `python` only to reuse what clippy compiled.
 docs: $(TOOLS)
