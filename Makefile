@@ -14,7 +14,7 @@ EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench instructions instructions-record docs clean
+.PHONY: build example test check bench bench-record instructions instructions-record docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -51,6 +51,11 @@ check: $(EXTENSION)
 bench: $(EXTENSION)
 	$(CARGO) bench --locked
 	$(PY) benches/python.py
+
+# One run of the benchmarks whose history is kept, appended to benches/history.csv and drawn.
+bench-record: $(EXTENSION)
+	$(CARGO) bench --locked --bench ensemble --bench crossing
+	$(PY) benches/history.py --append --plot benches/history.png
 
 # Fails if a crossing takes more instructions than benches/instructions.toml says. Built as `cargo test $(PROFILE)`
 # builds: bench and release profile are the same, and so share all that is compiled.
