@@ -53,7 +53,7 @@ bench: $(EXTENSION)
 	$(PY) benches/python.py
 
 # One run of the benchmarks whose history is kept, appended to benches/history.csv and drawn.
-bench-record: $(EXTENSION)
+bench-record: $(TOOLS)
 	$(CARGO) bench --locked --bench ensemble --bench crossing
 	$(PY) benches/history.py --append --plot benches/history.png
 

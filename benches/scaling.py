@@ -116,7 +116,7 @@ def draw(results: dict[str, list[tuple[int, float]]], path: Path) -> None:
         sizes, costs = zip(*points, strict=True)
         panel.plot(sizes, [1e6 * cost for cost in costs], "o-", ms=4)
         panel.set_xlabel(name)
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(0.0, 1.1e6 * max(costs))
         if name == "samples":
             panel.set_xscale("log")
         else:
