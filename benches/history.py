@@ -10,6 +10,7 @@ import argparse
 import csv
 import datetime
 import json
+import os
 import platform
 import statistics
 import subprocess
@@ -90,14 +91,27 @@ def measured(since: float) -> dict[str, tuple[float, str]]:
     return found
 
 
-def run(since: float) -> list[Figured]:
-    """All figures of the run just made."""
-    figures = measured(since)
-    if not figures:
-        sys.exit("nothing was measured since the last commit: `make bench-record` measures first")
-    if SHARES.exists() and SHARES.stat().st_mtime >= since:
-        for name, share in json.loads(SHARES.read_text()).items():
-            figures[f"share-of-peak/ensemble/kishan_1973/modes=3/{name}"] = (share, "%")
+def busy() -> bool:
+    """Whether the machine had more to do than the benchmarks, which fill all cores at most."""
+    return os.getloadavg()[1] > (os.cpu_count() or 1) + 0.5
+
+
+def run(since: float, *, anyway: bool) -> list[Figured]:
+    """All figures of the run just made; without times and rates if the machine was busy."""
+    figures: dict[str, tuple[float, str]] = {}
+    if busy() and not anyway:
+        print(
+            f"The machine was busy with other work (load {os.getloadavg()[1]:.1f}):"
+            " instructions are recorded, times are not (--anyway takes them too).",
+            file=sys.stderr,
+        )
+    else:
+        figures = measured(since)
+        if not figures:
+            sys.exit("nothing was measured since the last commit: `make bench-record` does it")
+        if SHARES.exists() and SHARES.stat().st_mtime >= since:
+            for name, share in json.loads(SHARES.read_text()).items():
+                figures[f"share-of-peak/ensemble/kishan_1973/modes=3/{name}"] = (share, "%")
     for name, count in instructions.measure().items():
         if count is not None:
             figures[f"instructions/{name}"] = (float(count), "1")
@@ -136,7 +150,7 @@ def draw(rows: list[Figured], path: Path) -> None:
     lines = -(-len(benchmarks) // COLUMNS)
     figure = Figure(figsize=(3.4 * COLUMNS, 1.9 * lines + 0.6), layout="constrained")
     panels = figure.subplots(lines, COLUMNS, squeeze=False, sharex=True).flat
-    for panel, name in zip(panels, benchmarks, strict=False):
+    for index, (panel, name) in enumerate(zip(panels, benchmarks, strict=False)):
         own = [row for row in rows if row.benchmark == name]
         for number, kind in enumerate(processors):
             color = colormaps["tab10"](number % 10)
@@ -157,7 +171,7 @@ def draw(rows: list[Figured], path: Path) -> None:
         panel.set_xlim(-0.5, len(commits) - 0.5)
         panel.set_xticks(range(len(commits)), commits, rotation=90, fontsize=6)
         panel.tick_params(axis="y", labelsize=7)
-        panel.tick_params(axis="x", labelbottom=True)
+        panel.tick_params(axis="x", labelbottom=index + COLUMNS >= len(benchmarks))
         panel.grid(alpha=0.3)
     for panel in list(figure.axes)[len(benchmarks) :]:
         panel.remove()
@@ -195,11 +209,13 @@ def wrapped(name: str) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--append", action="store_true", help="take in the run just made")
+    parser.add_argument("--anyway", action="store_true", help="times of a busy machine too")
     parser.add_argument("--plot", type=Path, metavar="PNG", help="draw all runs")
     arguments = parser.parse_args()
     if arguments.append:
         # What criterion measured before the commit was not measured of it.
-        append(run(since=float(git("log", "-1", "--format=%ct"))))
+        since = float(git("log", "-1", "--format=%ct"))
+        append(run(since, anyway=arguments.anyway))
     if arguments.plot:
         draw(read(), arguments.plot)
 
