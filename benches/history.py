@@ -131,7 +131,7 @@ def append(rows: list[Figured]) -> None:
         if new:
             writer.writerow(field.name for field in fields(Figured))
         for row in rows:
-            writer.writerow(f"{v:.6g}" if isinstance(v, float) else v for v in astuple(row))
+            writer.writerow(f"{v:.8g}" if isinstance(v, float) else v for v in astuple(row))
 
 
 def read() -> list[Figured]:
