@@ -15,7 +15,7 @@ EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench bench-compare docs clean
+.PHONY: build example test check bench bench-compare bench-record instructions instructions-record docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -60,6 +60,19 @@ bench-compare: $(EXTENSION) $(PEERS)
 $(PEERS): $(TOOLS) benches/requirements-peers.txt
 	$(PY) -m pip install --quiet --disable-pip-version-check -r benches/requirements-peers.txt
 	touch $@
+
+# One run of the benchmarks whose history is kept, appended to benches/history.csv and drawn.
+bench-record: $(TOOLS)
+	$(CARGO) bench --locked --bench ensemble --bench crossing
+	$(PY) benches/history.py --append --plot benches/history.png
+
+# Fails if a crossing takes more instructions than benches/instructions.toml says. Built as `cargo test $(PROFILE)`
+# builds: bench and release profile are the same, and so share all that is compiled.
+instructions: $(TOOLS)
+	CARGO="$(CARGO)" $(PY) benches/instructions.py
+
+instructions-record: $(TOOLS)
+	CARGO="$(CARGO)" $(PY) benches/instructions.py --record
 
 # With the feature `python` only to reuse what clippy compiled.
 docs: $(TOOLS)

@@ -4,58 +4,15 @@ mod problems;
 
 use std::sync::Arc;
 
-use problems::*;
-use spanwise::analysis::Analysis;
-use spanwise::course::Passage;
+use problems::ensemble::*;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::Samples;
 use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{Progress, Run, Study, Workers};
-use spanwise::flexibility::Flexibility;
-use spanwise::influence::Quantity;
-use spanwise::modes::Modes;
-use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::road::patch::Patch;
-use spanwise::road::random::Synthesis;
-use spanwise::road::spectrum::Spectrum;
 use spanwise::settings::Settings;
 
-const SEED: u64 = 7;
-
-const ALL: [Quantity; 6] = [
-    Quantity::Deflection,
-    Quantity::Moment,
-    Quantity::ShearLeft,
-    Quantity::ShearRight,
-    Quantity::Reaction,
-    Quantity::ClampMoment,
-];
-
-fn synthesis() -> Arc<Synthesis> {
-    let spectrum = Spectrum::new(64e-6, 2.0, [0.01, 4.0]).unwrap();
-    Arc::new(Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(128.0)).unwrap())
-}
-
-fn analysis(sections: usize) -> Arc<Analysis> {
-    let bridge = kishan_bridge();
-    let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let length = bridge.length();
-    let sections: Vec<f64> = (0..sections).map(|i| length * i as f64 / (sections - 1) as f64).collect();
-    let recovery = Recovery::ForceSummation;
-    Arc::new(Analysis::new(&bridge, modes, &undamped(), Some(&sections), recovery, &mut || true).unwrap())
-}
-
-fn settings() -> Settings {
-    Settings { approach: 30.0, ramp: 10.0, ..Settings::at_speed(22.86) }
-}
-
-fn headline() -> Study {
-    let kinds = vec![vec![Passage::of(kishan_vehicle())]];
-    Study::new(analysis(25), kinds, settings(), Some((synthesis(), SEED)), Some(0.02286), &ALL).unwrap()
-}
-
-fn run(study: &Study, samples: &Samples, isa: Isa, threads: usize, chunk: usize) -> Run {
+fn spread(study: &Study, samples: &Samples, isa: Isa, threads: usize, chunk: usize) -> Run {
     study.run(samples, &Workers { isa, threads, chunk }, &Progress::default()).unwrap()
 }
 
@@ -105,7 +62,7 @@ fn a_sample_is_a_crossing() {
     let study = headline();
     let speeds: Vec<f64> = (0..9).map(|i| 15.0 + 3.0 * f64::from(i)).collect();
     let samples = Samples { speeds, ..Samples::at_speed(100, 9, 1.0) };
-    let together = run(&study, &samples, Isa::Scalar, 1, 32);
+    let together = spread(&study, &samples, Isa::Scalar, 1, 32);
     assert!(together.results.failures.is_empty());
     check_alone(&study, &samples, &together);
 }
@@ -114,17 +71,17 @@ fn a_sample_is_a_crossing() {
 fn nothing_about_the_work_changes_a_bit() {
     let study = headline();
     let samples = Samples::at_speed(0, 70, 22.86);
-    let reference = run(&study, &samples, Isa::Scalar, 1, 32).results;
+    let reference = spread(&study, &samples, Isa::Scalar, 1, 32).results;
     for isa in Isa::present() {
         for threads in [1, 2, 7] {
             for chunk in [1, 31, 32, 1000] {
-                let again = run(&study, &samples, isa, threads, chunk).results;
+                let again = spread(&study, &samples, isa, threads, chunk).results;
                 assert_eq!(again.hash(), reference.hash(), "{isa:?}, {threads} threads, chunks of {chunk}");
             }
         }
     }
     for sample in [0, 17, 69] {
-        let alone = run(&study, &Samples::at_speed(sample, 1, 22.86), Isa::Scalar, 1, 32).results;
+        let alone = spread(&study, &Samples::at_speed(sample, 1, 22.86), Isa::Scalar, 1, 32).results;
         assert_eq!(alone.digests[0], reference.digests[sample as usize]);
     }
 }
@@ -135,7 +92,7 @@ fn speed() {
     let samples = Samples::at_speed(0, 4000, 22.86);
     for (isa, threads) in [(Isa::chosen().unwrap(), 1), (Isa::chosen().unwrap(), 2), (Isa::Scalar, 1)] {
         let start = std::time::Instant::now();
-        run(&study, &samples, isa, threads, 32);
+        spread(&study, &samples, isa, threads, 32);
         println!("{isa:?} {threads}: {:.0}/s", samples.count as f64 / start.elapsed().as_secs_f64());
     }
 }

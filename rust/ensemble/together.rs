@@ -191,7 +191,7 @@ impl<'a> Task<'a> {
 
     /// One block of samples in groups of lanes; the last group is filled up with its last sample.
     #[inline(always)]
-    fn block<L: Lane>(
+    pub fn block<L: Lane>(
         &self,
         members: &[u32],
         records: &mut [&mut Record<'a>],

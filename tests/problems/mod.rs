@@ -3,6 +3,7 @@
 
 pub mod answers;
 pub mod elements;
+pub mod ensemble;
 pub mod mechanics;
 pub mod vehicles;
 
