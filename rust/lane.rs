@@ -1,8 +1,11 @@
 //! What the time step computes with: one `f64`, or several samples side by side.
 
+pub mod bits;
 pub mod wide;
 
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
+
+use bits::Bits;
 
 /// One number per sample. All operations are exact IEEE ones, element by element, so that a sample's bits depend
 /// neither on its neighbours nor on the width.
@@ -11,6 +14,9 @@ pub trait Lane:
 {
     /// One truth value per sample.
     type Mask: Copy + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+
+    /// The bits of one number per sample.
+    type Bits: Bits;
 
     /// Number of samples.
     const SAMPLES: usize;
@@ -57,6 +63,12 @@ pub trait Lane:
     /// e to the power of self, the same bits on every machine.
     fn exp(self) -> Self;
 
+    /// The bits of the numbers.
+    fn to_bits(self) -> Self::Bits;
+
+    /// The numbers of these bits.
+    fn from_bits(bits: Self::Bits) -> Self;
+
     /// Magnitude.
     #[inline(always)]
     fn magnitude(self) -> Self {
@@ -66,6 +78,8 @@ pub trait Lane:
 
 impl Lane for f64 {
     type Mask = bool;
+
+    type Bits = u64;
 
     const SAMPLES: usize = 1;
 
@@ -100,5 +114,15 @@ impl Lane for f64 {
     fn exp(self) -> Self {
         // Not the standard library's, which is that of the platform.
         libm::exp(self)
+    }
+
+    #[inline(always)]
+    fn to_bits(self) -> u64 {
+        f64::to_bits(self)
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u64) -> Self {
+        f64::from_bits(bits)
     }
 }

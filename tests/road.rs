@@ -4,11 +4,14 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 use spanwise::error::Error;
+use spanwise::lane::Lane;
+use spanwise::lane::bits::{Bits, WideBits};
+use spanwise::lane::wide::Wide;
 use spanwise::road::feature::Feature;
 use spanwise::road::fft::InverseFft;
 use spanwise::road::golden_car;
 use spanwise::road::patch::Patch;
-use spanwise::road::philox::philox4x32;
+use spanwise::road::philox::{philox4x32, philox4x32_lanes};
 use spanwise::road::profile::Profile;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::{Class, Spectrum};
@@ -84,6 +87,32 @@ fn philox_gives_the_published_answers() {
     ];
     for (counter, key, answer) in answers {
         assert_eq!(philox4x32(counter, key), answer);
+        // In lanes: the last one with this counter, the others with others; what is above a word is not looked at.
+        let of_lane = |counter: [u32; 4], lane: usize| counter.map(|word| word.wrapping_add(3 - lane as u32));
+        let wide = [0, 1, 2, 3].map(|k| {
+            WideBits::<4>::from_fn(|lane| u64::from(of_lane(counter, lane)[k]) | (0xabcd_0000 + lane as u64) << 32)
+        });
+        let found = philox4x32_lanes(wide, key);
+        for lane in 0..4 {
+            let words = found.map(|words| words.get(lane) as u32);
+            assert_eq!(words, philox4x32(of_lane(counter, lane), key));
+            assert!(lane < 3 || words == answer);
+        }
+    }
+}
+
+#[test]
+fn angles_in_words_are_angles() {
+    let near_quarters = (0..8_u32).flat_map(|k| (0..5).map(move |d| (k << 29).wrapping_add(d).wrapping_sub(2)));
+    let words: Vec<u32> = near_quarters.chain((0..100_000).map(|k: u32| k.wrapping_mul(2_654_435_769))).collect();
+    for words in words.as_chunks::<8>().0 {
+        let wide = WideBits::<8>::from_fn(|lane| u64::from(words[lane]) | 0x1234_5678 << 32);
+        let (sines, cosines) = turn::sin_cos_of_words::<Wide<8>>(wide);
+        for (lane, &word) in words.iter().enumerate() {
+            let found = (sines.get(lane), cosines.get(lane));
+            assert_eq!(found, turn::sin_cos_of_words::<f64>(u64::from(word)));
+            assert_eq!(found, turn::sin_cos(f64::from(word) / 4_294_967_296.0));
+        }
     }
 }
 
@@ -109,21 +138,99 @@ fn sine_and_cosine_are_exact_to_the_last_bits() {
 
 #[test]
 fn the_transform_is_the_sum_it_stands_for() {
-    for n in [4_usize, 8, 64] {
-        let half = n / 2;
-        let re: Vec<f64> = (0..=half).map(|m| (1.3 * m as f64).cos()).collect();
-        let mut im: Vec<f64> = (0..=half).map(|m| (2.1 * m as f64).sin()).collect();
-        (im[0], im[half]) = (0.0, 0.0);
-        let (mut even, mut odd) = (re.clone(), im.clone());
-        InverseFft::new(n).real(&mut even, &mut odd);
-        for j in 0..n {
-            let wave = |m: usize| {
-                let angle = TAU * (m * j) as f64 / n as f64;
-                re[m] * angle.cos() - im[m] * angle.sin()
-            };
-            let expected = wave(0) + wave(half) + (1..half).map(|m| 2.0 * wave(m)).sum::<f64>();
-            let found = if j % 2 == 0 { even[j / 2] } else { odd[j / 2] };
-            assert!((found - expected).abs() < 1e-13 * n as f64, "n = {n}, j = {j}: {found} {expected}");
+    for n in [4_usize, 8, 16, 32, 512, 1024] {
+        let z: Vec<[f64; 2]> = (0..n).map(|m| [(1.3 * m as f64).cos(), (2.1 * (m * m) as f64).sin()]).collect();
+        let fft = InverseFft::new(n);
+        let mut found = vec![[0.0; 2]; n];
+        for (m, z) in z.iter().enumerate() {
+            found[fft.place(m)] = *z;
+        }
+        fft.transform(&mut found);
+        let roots: Vec<_> = (0..n).map(|k| Complex::from_polar(1.0, TAU * k as f64 / n as f64)).collect();
+        let (mut apart, mut largest) = (0.0_f64, 0.0_f64);
+        for (j, [re, im]) in found.into_iter().enumerate() {
+            let expected: Complex<f64> =
+                z.iter().enumerate().map(|(m, [re, im])| Complex::new(*re, *im) * roots[m * j % n]).sum();
+            apart = apart.max((Complex::new(re, im) - expected).norm());
+            largest = largest.max(expected.norm());
+        }
+        println!("n = {n}: {:.1e}", apart / largest);
+        assert!(apart <= 1e-13 * largest, "n = {n}");
+    }
+}
+
+// Samples side by side.
+
+/// What is to be the same in one lane, in eight, and in eight under another instruction set.
+struct Draw<'a> {
+    synthesis: &'a Synthesis,
+    first: u64,
+}
+
+impl pulp::NullaryFnOnce for Draw<'_> {
+    type Output = Vec<Wide<8>>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        // Not only zeros before.
+        let mut coefficients = vec![Wide::splat(f64::NAN); 5 + self.first as usize % 2 * 100_000];
+        self.synthesis.coefficients_into(7, |lane| self.first + lane as u64, &mut coefficients);
+        coefficients
+    }
+}
+
+#[test]
+fn lanes_and_instruction_sets_do_not_matter() {
+    let bands = [[1.0, 1.1], [0.3, 1.9], [0.01, 2.3], BAND];
+    for (band, period) in bands.into_iter().flat_map(|band| [1.0, 2.0, 16.0, 128.0, 1024.0].map(|p| (band, p))) {
+        if period * band[0] < 1.0 {
+            continue;
+        }
+        let spectrum = Spectrum::new(GOOD, 2.0, band).unwrap();
+        let synthesis = Synthesis::new(spectrum, patch(PATCH), Some(period)).unwrap();
+        for first in [0, u64::from(u32::MAX) - 3] {
+            let draw = || Draw { synthesis: &synthesis, first };
+            let wide = pulp::NullaryFnOnce::call(draw());
+            for lane in 0..8 {
+                let one: Vec<f64> = synthesis.coefficients(7, |_| first + lane as u64);
+                assert_eq!(one.len(), wide.len());
+                assert!(one.iter().zip(&wide).all(|(one, wide)| one.to_bits() == wide.get(lane).to_bits()));
+            }
+            #[cfg(target_arch = "x86_64")]
+            if let Some(avx2) = pulp::x86::V3::try_new() {
+                assert_eq!(avx2.vectorize(draw()), wide);
+            }
+            #[cfg(target_arch = "x86_64")]
+            if let Some(avx512) = pulp::x86::V4::try_new() {
+                assert_eq!(avx512.vectorize(draw()), wide);
+            }
+        }
+    }
+}
+
+#[test]
+fn coefficients_are_the_sum_of_the_waves() {
+    let (seed, sample) = (0x0123_4567_89ab_cdef_u64, 0xfedc_ba98_7654_3210_u64);
+    // The second band ends at a quarter of the points, the others before.
+    for (band, period) in [([0.02, 2.3], 128.0), ([0.05, 4.0], 32.0), ([1.0, 1.1], 1.0)] {
+        let spectrum = Spectrum::new(GOOD, 2.0, band).unwrap();
+        let synthesis = Synthesis::new(spectrum, patch(PATCH), Some(period)).unwrap();
+        let points = synthesis.points();
+        let wave = |m: usize| {
+            let counter = [(m / 4) as u32, 0, sample as u32, (sample >> 32) as u32];
+            let word = philox4x32(counter, [seed as u32, (seed >> 32) as u32])[m % 4];
+            let power = spectrum.power((m as f64 - 0.5) / period, (m as f64 + 0.5) / period);
+            let response = turn::sinc(m as f64 / period * PATCH) / turn::sinc(m as f64 / points as f64).powi(4);
+            ((2.0 * power).sqrt() * response, f64::from(word) / 4_294_967_296.0)
+        };
+        let waves: Vec<(usize, (f64, f64))> =
+            ((band[0] * period).round() as usize..=(band[1] * period).round() as usize).map(|m| (m, wave(m))).collect();
+        let largest: f64 = waves.iter().map(|(_, (amplitude, _))| amplitude.abs()).sum();
+        let found: Vec<f64> = synthesis.coefficients(seed, |_| sample);
+        for (j, found) in found.into_iter().enumerate() {
+            let angle = |m: usize| (m * j % points) as f64 / points as f64;
+            let expected: f64 = waves.iter().map(|&(m, (a, phase))| a * (TAU * (angle(m) + phase)).cos()).sum();
+            assert!((found - expected).abs() <= 1e-14 * largest, "{band:?}, {j}: {found} {expected}");
         }
     }
 }

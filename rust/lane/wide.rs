@@ -3,6 +3,7 @@
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::Lane;
+use super::bits::WideBits;
 
 /// One number for each of N samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +75,8 @@ impl<const N: usize> Not for Samples<N> {
 impl<const N: usize> Lane for Wide<N> {
     type Mask = Samples<N>;
 
+    type Bits = WideBits<N>;
+
     const SAMPLES: usize = N;
 
     #[inline(always)]
@@ -138,5 +141,15 @@ impl<const N: usize> Lane for Wide<N> {
             self.0[i] = libm::exp(self.0[i]);
         }
         self
+    }
+
+    #[inline(always)]
+    fn to_bits(self) -> WideBits<N> {
+        WideBits(self.0.map(f64::to_bits))
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: WideBits<N>) -> Self {
+        Wide(bits.0.map(f64::from_bits))
     }
 }

@@ -1,4 +1,4 @@
-//! Inverse Fourier transform of a real function: iterative, radix 2, in plain products and sums.
+//! Inverse Fourier transform of complex numbers: radix 4, in plain products and sums.
 //!
 //! Written here, and not taken from a library that looks for the fastest instructions, because the bits of a road must
 //! not depend on the machine. Generic over the lane, so that several samples can be transformed side by side.
@@ -6,91 +6,110 @@
 use super::turn::sin_cos;
 use crate::lane::Lane;
 
+/// Real and imaginary part.
+pub type Complex<L> = [L; 2];
+
 /// The tables for one number of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseFft {
-    /// (cos, sin) of 2πk/n, k < n/2.
-    twiddles: Vec<(f64, f64)>,
+    /// Where each component belongs before the transform: at its number with the bits reversed.
+    places: Vec<u32>,
+    /// From the smallest blocks to the largest, for blocks of `len` points: e^(2πi jk/len) with j = 1, 2, 3, k < len/4.
+    twiddles: Vec<[Complex<f64>; 3]>,
 }
 
 impl InverseFft {
     /// For n points, a power of two of at least 4.
     pub fn new(n: usize) -> Self {
         assert!(n >= 4 && n.is_power_of_two(), "{n} points: must be a power of two of at least 4");
-        let twiddle = |k: usize| {
-            let (sine, cosine) = sin_cos(k as f64 / n as f64);
-            (cosine, sine)
-        };
-        InverseFft { twiddles: (0..n / 2).map(twiddle).collect() }
+        let bits = n.trailing_zeros();
+        let places = (0..n as u32).map(|m| m.reverse_bits() >> (u32::BITS - bits)).collect();
+        let mut twiddles = Vec::new();
+        let mut len = 4 * smallest(n);
+        while len <= n {
+            let root = |turns: usize| {
+                let (sine, cosine) = sin_cos(turns as f64 / len as f64);
+                [cosine, sine]
+            };
+            twiddles.extend((0..len / 4).map(|k| [1, 2, 3].map(|j| root(j * k))));
+            len *= 4;
+        }
+        InverseFft { places, twiddles }
     }
 
     /// Number of points n.
     pub fn points(&self) -> usize {
-        2 * self.twiddles.len()
+        self.places.len()
     }
 
-    /// From X_m, m = 0..=n/2, to x_j = Σ X_m e^(2πi jm/n) over all m from −n/2+1 to n/2, where X_−m is conjugate to X_m.
+    /// Where component m belongs.
+    #[inline(always)]
+    pub fn place(&self, m: usize) -> usize {
+        self.places[m] as usize
+    }
+
+    /// From Z_m, each at its [`place`](Self::place), to z_j = Σ Z_m e^(2πi jm/n), j = 0..n.
     ///
-    /// Takes real and imaginary parts, n/2 + 1 each, and leaves the points with even j in the first n/2 of the real and
-    /// those with odd j in the first n/2 of the imaginary parts. What stands in the imaginary parts of X_0 and X_n/2 is
-    /// ignored.
+    /// Four blocks become one as soon as they are ready, and thus while they are in the cache.
     #[inline(always)]
-    pub fn real<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
-        let half = self.twiddles.len();
-        assert!(re.len() == half + 1 && im.len() == half + 1, "n/2 + 1 components are needed");
-        self.fold(re, im);
-        self.complex(&mut re[..half], &mut im[..half]);
-    }
-
-    /// Even and odd points are two real transforms of half the length, and thus one complex one: Z = E + iO with
-    /// E_m = X_m + X_(m+n/2) and O_m = (X_m − X_(m+n/2)) e^(2πi m/n).
-    #[inline(always)]
-    fn fold<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
-        let half = self.twiddles.len();
-        (re[0], im[0]) = (re[0] + re[half], re[0] - re[half]);
-        for m in 1..=half / 2 {
-            let (cosine, sine) = self.twiddles[m];
-            let (cosine, sine) = (L::splat(cosine), L::splat(sine));
-            let (a_re, a_im) = (re[m], im[m]);
-            let (b_re, b_im) = (re[half - m], -im[half - m]);
-            let (s_re, s_im) = (a_re + b_re, a_im + b_im);
-            let (d_re, d_im) = (a_re - b_re, a_im - b_im);
-            let (o_re, o_im) = (d_re * cosine - d_im * sine, d_re * sine + d_im * cosine);
-            (re[m], im[m]) = (s_re - o_im, s_im + o_re);
-            // E and O of the mirrored component are conjugate to these.
-            (re[half - m], im[half - m]) = (s_re + o_im, o_re - s_im);
-        }
-    }
-
-    /// In place: decimation in time after reversing the bits of the index.
-    #[inline(always)]
-    fn complex<L: Lane>(&self, re: &mut [L], im: &mut [L]) {
-        let n = re.len();
-        let shift = usize::BITS - n.trailing_zeros();
-        for i in 0..n {
-            let j = i.reverse_bits() >> shift;
-            if i < j {
-                re.swap(i, j);
-                im.swap(i, j);
+    pub fn transform<L: Lane>(&self, z: &mut [Complex<L>]) {
+        let n = self.points();
+        assert!(z.len() == n, "as many components as points are needed");
+        let smallest = smallest(n);
+        let mut ready = 0;
+        while ready < n {
+            let [a, b, c, d] = &mut z[ready..].as_chunks_mut().0[0];
+            [*a, *b, *c, *d] = match smallest {
+                4 => butterfly([*a, *b, *c, *d]),
+                _ => [plus(*a, *b), minus(*a, *b), plus(*c, *d), minus(*c, *d)],
+            };
+            ready += 4;
+            let (mut len, mut twiddles) = (4 * smallest, &self.twiddles[..]);
+            while len <= n && ready % len == 0 {
+                let (of_this, of_larger) = twiddles.split_at(len / 4);
+                join(&mut z[ready - len..ready], of_this);
+                (len, twiddles) = (4 * len, of_larger);
             }
         }
-        let mut half = 1;
-        while half < n {
-            // The tables are for twice as many points.
-            let stride = n / half;
-            for (re, im) in re.chunks_exact_mut(2 * half).zip(im.chunks_exact_mut(2 * half)) {
-                let (re, re_odd) = re.split_at_mut(half);
-                let (im, im_odd) = im.split_at_mut(half);
-                for k in 0..half {
-                    let (cosine, sine) = self.twiddles[k * stride];
-                    let (cosine, sine) = (L::splat(cosine), L::splat(sine));
-                    let t_re = re_odd[k] * cosine - im_odd[k] * sine;
-                    let t_im = re_odd[k] * sine + im_odd[k] * cosine;
-                    (re_odd[k], im_odd[k]) = (re[k] - t_re, im[k] - t_im);
-                    (re[k], im[k]) = (re[k] + t_re, im[k] + t_im);
-                }
-            }
-            half *= 2;
-        }
     }
+}
+
+/// Points of the blocks that the transform begins with.
+fn smallest(n: usize) -> usize {
+    if n.trailing_zeros().is_multiple_of(2) { 4 } else { 2 }
+}
+
+/// One transform from those of every fourth component, in the order of reversed bits: from 0, 2, 1 and 3 on.
+#[inline(always)]
+fn join<L: Lane>(block: &mut [Complex<L>], twiddles: &[[Complex<f64>; 3]]) {
+    let (front, back) = block.split_at_mut(2 * twiddles.len());
+    let (a, b) = front.split_at_mut(twiddles.len());
+    let (c, d) = back.split_at_mut(twiddles.len());
+    for ((((a, b), c), d), &[one, two, three]) in a.iter_mut().zip(b).zip(c).zip(d).zip(twiddles) {
+        [*a, *b, *c, *d] = butterfly([*a, turned(*b, two), turned(*c, one), turned(*d, three)]);
+    }
+}
+
+/// Transform of four components in the order 0, 2, 1, 3.
+#[inline(always)]
+fn butterfly<L: Lane>([a, b, c, d]: [Complex<L>; 4]) -> [Complex<L>; 4] {
+    let (even, [even_re, even_im]) = (plus(a, b), minus(a, b));
+    let (odd, [odd_re, odd_im]) = (plus(c, d), minus(c, d));
+    [plus(even, odd), [even_re - odd_im, even_im + odd_re], minus(even, odd), [even_re + odd_im, even_im - odd_re]]
+}
+
+#[inline(always)]
+fn plus<L: Lane>(a: Complex<L>, b: Complex<L>) -> Complex<L> {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+#[inline(always)]
+fn minus<L: Lane>(a: Complex<L>, b: Complex<L>) -> Complex<L> {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+#[inline(always)]
+fn turned<L: Lane>([re, im]: Complex<L>, [cosine, sine]: Complex<f64>) -> Complex<L> {
+    let (cosine, sine) = (L::splat(cosine), L::splat(sine));
+    [re * cosine - im * sine, re * sine + im * cosine]
 }

@@ -4,32 +4,45 @@
 //! <https://doi.org/10.1145/2063384.2063405>. No state runs from one draw to the next, so that a sample is the same
 //! whichever worker draws it, and in any order.
 
-const ROUNDS: u32 = 10;
-const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
+use crate::lane::bits::Bits;
+
+const MULTIPLIERS: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 /// What the key grows by from round to round: the golden ratio and √3 − 1.
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 
 /// Four random words for a counter under a key.
 pub fn philox4x32(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-    let [mut c0, mut c1, mut c2, mut c3] = counter;
-    let [mut k0, mut k1] = key;
-    for _ in 0..ROUNDS {
-        let (high0, low0) = product(MULTIPLIERS[0], c0);
-        let (high1, low1) = product(MULTIPLIERS[1], c2);
-        (c0, c1, c2, c3) = (high1 ^ c1 ^ k0, low1, high0 ^ c3 ^ k1, low0);
-        k0 = k0.wrapping_add(WEYL[0]);
-        k1 = k1.wrapping_add(WEYL[1]);
-    }
-    [c0, c1, c2, c3]
+    philox4x32_lanes(counter.map(u64::from), key).map(|word| word as u32)
 }
 
-/// Upper and lower word of a product.
-fn product(a: u32, b: u32) -> (u32, u32) {
-    let [high, low] = words(u64::from(a) * u64::from(b));
-    (high, low)
+/// The same for several samples side by side: a counter of its own for each, one key.
+///
+/// Words stand in the lower 32 bits. The upper ones of the counter are ignored, and those of the answer mean nothing:
+/// a product is of lower halves, and its own lower half is best left where it is.
+#[inline(always)]
+pub fn philox4x32_lanes<B: Bits>(counter: [B; 4], key: [u32; 2]) -> [B; 4] {
+    // Written out, because in a loop the compiler finds no vectors.
+    let words = round(counter, key, 0);
+    let words = round(words, key, 1);
+    let words = round(words, key, 2);
+    let words = round(words, key, 3);
+    let words = round(words, key, 4);
+    let words = round(words, key, 5);
+    let words = round(words, key, 6);
+    let words = round(words, key, 7);
+    let words = round(words, key, 8);
+    round(words, key, 9)
+}
+
+#[inline(always)]
+fn round<B: Bits>([c0, c1, c2, c3]: [B; 4], key: [u32; 2], number: u32) -> [B; 4] {
+    let [k0, k1] = [0, 1].map(|k| B::splat(u64::from(key[k].wrapping_add(number.wrapping_mul(WEYL[k])))));
+    let [first, second] = [c0.times(B::splat(MULTIPLIERS[0])), c2.times(B::splat(MULTIPLIERS[1]))];
+    [second.down(32).xor(c1).xor(k0), second, first.down(32).xor(c3).xor(k1), first]
 }
 
 /// Upper and lower word of a number.
+#[inline(always)]
 pub fn words(number: u64) -> [u32; 2] {
     [(number >> 32) as u32, number as u32]
 }

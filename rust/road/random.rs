@@ -11,16 +11,22 @@
 //! sinc⁴(m/N), which is divided out first, so that every wave of the band has its exact amplitude at all x, not only at
 //! grid points. What the spline adds are images at the wave numbers (jN ± m)/P, smaller by (m/(N − m))⁴: at most 1/81
 //! of the amplitude for the shortest wave, four grid points long, and next to nothing for all others.
+//!
+//! The N coefficients are real: half as many complex numbers z_j = c_2j + i c_2j+1, whose transform is, for the component
+//! X_m of the coefficients, X_m (1 + i e^iθ) at m and the conjugate of X_m (1 − i e^iθ) at N/2 − m, θ = 2πm/N. Since
+//! 1 + i e^iθ = 2 cos α e^iα and 1 − i e^iθ = −2i sin α e^iα with α = θ/2 + π/4, both are a fixed amplitude with the sine
+//! and cosine of one angle, φ_m + α. In words of the generator that angle is a sum of whole numbers.
 
 use super::Point;
-use super::fft::InverseFft;
+use super::fft::{Complex, InverseFft};
 use super::patch::Patch;
-use super::philox::{philox4x32, words};
+use super::philox::{philox4x32_lanes, words};
 use super::spectrum::Spectrum;
 use super::spline::Spline;
-use super::turn::{sin_cos, sinc};
+use super::turn::{sin_cos, sin_cos_of_words, sinc};
 use crate::error::{Error, positive};
 use crate::lane::Lane;
+use crate::lane::bits::Bits;
 
 /// Shortest default period [m].
 const PERIOD: f64 = 1000.0;
@@ -28,14 +34,17 @@ const PERIOD: f64 = 1000.0;
 /// Grid points per shortest wave.
 const POINTS_PER_WAVE: f64 = 4.0;
 
+/// Fewest grid points, for the sake of the transform.
+const FEWEST_POINTS: usize = 8;
+
 /// Most grid points; a road of them takes 32 MiB.
 const MOST_POINTS: usize = 1 << 22;
 
 /// What the words of the generator are drawn for, so that other draws under the same seed are others.
-const PHASES: u32 = 0;
+const PHASES: u64 = 0;
 
-/// A whole turn in units of the generator's words.
-const WORDS_PER_TURN: f64 = 4_294_967_296.0;
+/// A turn has 2³² of the generator's words, a half 2³¹.
+const HALF_TURN: u64 = 1 << 31;
 
 /// All that roads of one spectrum share: amplitudes and tables.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +54,8 @@ pub struct Synthesis {
     period: f64,
     /// Number m of the first wave.
     first: usize,
-    /// Half amplitudes of the B-spline coefficients, from the first wave on [m].
-    amplitudes: Vec<f64>,
+    /// Amplitudes at m and at N/2 − m, from the first wave on [m].
+    amplitudes: Vec<[f64; 2]>,
     fft: InverseFft,
 }
 
@@ -72,18 +81,20 @@ impl Synthesis {
             let value = format!("{length} m with waves of {} m", 1.0 / highest);
             return Err(Error::input(key, value, allowed));
         }
-        let points = (wanted as usize).next_power_of_two();
+        let points = (wanted as usize).next_power_of_two().max(FEWEST_POINTS);
         let period = given.unwrap_or(points as f64 / per_metre);
         let (first, last) = ((lowest * period).round() as usize, (highest * period).round() as usize);
-        let amplitude = |m: usize| {
+        let amplitudes = |m: usize| {
             let power = spectrum.power((m as f64 - 0.5) / period, (m as f64 + 0.5) / period);
             let spline = sinc(m as f64 / points as f64);
             let spline = spline * spline;
             // Two conjugate components share the wave: each has half of its amplitude √(2 power).
-            (0.5 * power).sqrt() * sinc(m as f64 / period * patch.length()) / (spline * spline)
+            let amplitude = (0.5 * power).sqrt() * sinc(m as f64 / period * patch.length()) / (spline * spline);
+            let (sine, cosine) = sin_cos(0.5 * m as f64 / points as f64 + 0.125);
+            [2.0 * amplitude * cosine, 2.0 * amplitude * sine]
         };
-        let amplitudes = (first..=last).map(amplitude).collect();
-        Ok(Synthesis { spectrum, patch, period, first, amplitudes, fft: InverseFft::new(points) })
+        let amplitudes = (first..=last).map(amplitudes).collect();
+        Ok(Synthesis { spectrum, patch, period, first, amplitudes, fft: InverseFft::new(points / 2) })
     }
 
     /// Period [m].
@@ -93,53 +104,55 @@ impl Synthesis {
 
     /// Number of grid points in a period.
     pub fn points(&self) -> usize {
-        self.fft.points()
-    }
-
-    /// Spline coefficients of the roads of several samples, one in each lane.
-    pub fn coefficients<L: Lane>(&self, seed: u64, sample: impl Fn(usize) -> u64) -> Vec<L> {
-        let half = self.fft.points() / 2;
-        let components: Vec<[Vec<f64>; 2]> = (0..L::SAMPLES)
-            .map(|lane| {
-                let mut parts = [vec![0.0; half + 1], vec![0.0; half + 1]];
-                let [re, im] = &mut parts;
-                self.components(seed, sample(lane), re, im);
-                parts
-            })
-            .collect();
-        let gathered = |part: usize| (0..=half).map(|m| L::from_fn(|lane| components[lane][part][m])).collect();
-        let (mut re, mut im): (Vec<L>, Vec<L>) = (gathered(0), gathered(1));
-        self.fft.real(&mut re, &mut im);
-        re[..half].iter().zip(&im[..half]).flat_map(|(even, odd)| [*even, *odd]).collect()
+        2 * self.fft.points()
     }
 
     /// The road of a seed and a sample number: a function of these alone.
     pub fn road(&self, seed: u64, sample: u64) -> Random {
-        let half = self.fft.points() / 2;
-        let (mut re, mut im) = (vec![0.0; half + 1], vec![0.0; half + 1]);
-        self.components(seed, sample, &mut re, &mut im);
-        self.fft.real(&mut re, &mut im);
-        let coefficients = re[..half].iter().zip(&im[..half]).flat_map(|(even, odd)| [*even, *odd]).collect();
-        Random {
-            spectrum: self.spectrum,
-            patch: self.patch,
-            seed,
-            sample,
-            spline: Spline::new(coefficients, self.period),
-        }
+        let spline = Spline::new(self.coefficients(seed, |_| sample), self.period);
+        Random { spectrum: self.spectrum, patch: self.patch, seed, sample, spline }
     }
 
-    /// Spectrum of the B-spline coefficients, into zeros.
-    fn components(&self, seed: u64, sample: u64, re: &mut [f64], im: &mut [f64]) {
-        let ([key1, key0], [sample1, sample0]) = (words(seed), words(sample));
+    /// Spline coefficients of the roads of several samples, one in each lane [m].
+    #[inline(always)]
+    pub fn coefficients<L: Lane>(&self, seed: u64, sample: impl Fn(usize) -> u64) -> Vec<L> {
+        let mut coefficients = Vec::new();
+        self.coefficients_into(seed, sample, &mut coefficients);
+        coefficients
+    }
+
+    /// The same into a vector that has been used before, or not; whatever it holds is lost.
+    #[inline(always)]
+    pub fn coefficients_into<L: Lane>(&self, seed: u64, sample: impl Fn(usize) -> u64, coefficients: &mut Vec<L>) {
+        coefficients.resize(self.points(), L::splat(0.0));
+        let (pairs, _) = coefficients.as_chunks_mut();
+        self.components(seed, sample, pairs);
+        self.fft.transform(pairs);
+    }
+
+    /// Transform of pairs of coefficients, each component at its place.
+    #[inline(always)]
+    fn components<L: Lane>(&self, seed: u64, sample: impl Fn(usize) -> u64, z: &mut [Complex<L>]) {
+        let n = self.fft.points();
         let end = self.first + self.amplitudes.len();
+        let [key1, key0] = words(seed);
+        let sample0 = L::Bits::from_fn(sample);
+        let sample1 = sample0.down(32);
+        for m in (0..self.first).chain(end..n - end + 1).chain(n - self.first + 1..n) {
+            z[self.fft.place(m)] = [L::splat(0.0); 2];
+        }
+        let half_step = HALF_TURN / self.points() as u64;
         for block in self.first / 4..end.div_ceil(4) {
-            let random = philox4x32([block as u32, PHASES, sample0, sample1], [key0, key1]);
+            let counter = [L::Bits::splat(block as u64), L::Bits::splat(PHASES), sample0, sample1];
+            let random = philox4x32_lanes(counter, [key0, key1]);
             for (m, word) in (4 * block..).zip(random) {
                 if (self.first..end).contains(&m) {
-                    let (sine, cosine) = sin_cos(f64::from(word) / WORDS_PER_TURN);
-                    let amplitude = self.amplitudes[m - self.first];
-                    (re[m], im[m]) = (amplitude * cosine, amplitude * sine);
+                    let alpha = HALF_TURN / 4 + m as u64 * half_step;
+                    let (sine, cosine) = sin_cos_of_words::<L>(word.plus(L::Bits::splat(alpha)));
+                    let [near, far] = self.amplitudes[m - self.first].map(L::splat);
+                    z[self.fft.place(m)] = [near * cosine, near * sine];
+                    // At m = N/4 both are one component: near is 0, far all of it.
+                    z[self.fft.place(n - m)] = [far * sine, far * cosine];
                 }
             }
         }
