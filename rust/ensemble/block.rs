@@ -2,8 +2,8 @@
 //! and after each chunk the extremes of every response in it.
 
 use super::look::Look;
-use super::table::{Below, CHUNK, Table};
-use super::watch::{Between, Kept, Ride, Watched, watch, watch_free, watch_stop};
+use super::table::{Below, CHUNK, Chunk, Table};
+use super::watch::{Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
 use crate::recovery::Rows;
@@ -47,15 +47,15 @@ impl<'a, L: Lane> Shared<'a, L> {
                 },
                 Below::Own { given, taps, share } => {
                     let mask = self.road.len() - 1;
-                    let near = [0, 1, 2, 3].map(|k| self.road[taps.first.wrapping_add(k) & mask]);
-                    let [elevation, slope, curvature] = given.map(L::splat);
-                    let elevation = elevation + weighted(taps.weights[0], near);
+                    let tap = |k: usize| self.road[taps.first.wrapping_add(k) & mask];
+                    let near = [tap(0), tap(1), tap(2), tap(3)];
+                    let elevation = L::splat(given[0]) + weighted(taps.weights[0], near);
                     // Slope and curvature count only where the step asks for them.
                     if self.table.kinds == 1 {
-                        share.of([elevation, slope, curvature])
+                        share.of([elevation, L::splat(given[1]), L::splat(given[2])])
                     } else {
-                        let slope = slope + weighted(taps.weights[1], near);
-                        share.of([elevation, slope, curvature + weighted(taps.weights[2], near)])
+                        let slope = L::splat(given[1]) + weighted(taps.weights[1], near);
+                        share.of([elevation, slope, L::splat(given[2]) + weighted(taps.weights[2], near)])
                     }
                 }
             };
@@ -196,115 +196,143 @@ pub struct Way<'a> {
     pub closely: bool,
 }
 
+/// Most numbers that a group keeps of a stretch of steps: what is kept stays in the processor's caches.
+const KEPT: usize = 1 << 15;
+
 /// One group on its way.
 struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
     static_loads: Vec<L>,
-    kept: Kept<L>,
-    /// One in the lanes that have not ended yet, by step of the chunk.
+    /// What recovery needs, by step: of the steps of a stretch, and of the one before.
+    kept: Vec<L>,
+    /// One in the lanes that have not ended yet, by step of a stretch of the tail.
     active: Vec<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
-    /// Keeps what recovery needs of a step; lanes that have ended repeat the last of theirs.
+    /// Keeps what recovery needs of a step in its row.
     #[inline(always)]
-    fn keep(&mut self, step: usize, way: &Way<'_>, bridge: bool, tail: bool) {
+    fn keep(&mut self, row: usize, widths: &Widths, rates: bool, bridge: bool) {
         let zero = L::splat(0.0);
-        let before = [self.kept.coordinates.len(), self.kept.loads.len(), self.kept.accelerations.len()];
-        if bridge {
-            let rates = way.rows.by_rates();
-            match (&self.group.bridge, rates) {
-                (None, false) => self.kept.coordinates.extend(self.state.modes.iter().map(|c| c.x)),
-                (Some(b), false) => self.kept.coordinates.extend(self.state.modes.iter().map(|c| b.coordinates * c.x)),
-                (b, true) => {
-                    let factor = b.map_or(L::splat(1.0), |b| b.rates);
-                    self.kept.coordinates.extend(self.state.modes.iter().map(|c| factor * c.v));
-                    self.kept.coordinates.extend(self.state.modes.iter().map(|c| c.a));
-                }
+        let Widths { coordinates, axles, felt, .. } = *widths;
+        let kept = &mut self.kept[row * widths.all()..(row + 1) * widths.all()];
+        if !bridge {
+            kept[..coordinates].fill(zero);
+        } else if rates {
+            let modes = coordinates / 2;
+            for (m, c) in self.state.modes[..modes].iter().enumerate() {
+                kept[m] = self.group.bridge.as_ref().map_or(c.v, |b| b.rates * c.v);
+                kept[modes + m] = c.a;
             }
         } else {
-            self.kept.coordinates.extend(std::iter::repeat_n(zero, way.rows.width()));
+            for (m, c) in self.state.modes[..coordinates].iter().enumerate() {
+                kept[m] = self.group.bridge.as_ref().map_or(c.x, |b| b.coordinates * c.x);
+            }
         }
-        let loads = self.static_loads.iter().zip(&self.state.increments);
-        self.kept.loads.extend(loads.map(|(p, increment)| *p + *increment));
-        for row in self.group.bodies {
-            let coordinates = row.iter().zip(&self.state.coordinates);
-            self.kept.accelerations.push(coordinates.fold(zero, |sum, (b, q)| sum + L::splat(*b) * q.a));
+        for k in 0..axles {
+            let load = self.static_loads[k] + self.state.increments[k];
+            kept[coordinates + k] = if felt { load } else { zero };
+            kept[coordinates + axles + k] = load;
         }
-        let one = L::splat(1.0);
-        if tail {
-            let (now, ends) = (L::splat(step as f64), &self.group.ends);
-            let ended = ends.last.less(now);
-            let ending = !(ends.last.less(now) | now.less(ends.last));
-            let finish = |values: &mut Vec<L>, from: usize, width: usize| {
-                for i in from..values.len() {
-                    let (b, a) = (values[i - width], values[i]);
-                    let short = b + ends.fraction * (a - b);
-                    // A whole last step is not rounded.
-                    let whole = !ends.fraction.less(one);
-                    let last = L::select(ending, L::select(whole, a, short), a);
-                    values[i] = L::select(ended, b, last);
-                }
-            };
-            finish(&mut self.kept.coordinates, before[0], way.rows.width());
-            finish(&mut self.kept.loads, before[1], self.static_loads.len());
-            finish(&mut self.kept.accelerations, before[2], self.group.bodies.len());
-            self.active.push(L::select(ended, zero, one));
-        } else {
-            self.active.push(one);
+        for (b, row) in self.group.bodies.iter().enumerate() {
+            let mut sum = zero;
+            for (factor, q) in row.iter().zip(&self.state.coordinates) {
+                sum = sum + L::splat(*factor) * q.a;
+            }
+            kept[widths.accelerations() + b] = sum;
         }
+    }
+
+    /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats its last row.
+    #[inline(always)]
+    fn end(&mut self, row: usize, step: usize, widths: &Widths) {
+        let (zero, one, now) = (L::splat(0.0), L::splat(1.0), L::splat(step as f64));
+        let ends = &self.group.ends;
+        let ended = ends.last.less(now);
+        let ending = !(ended | now.less(ends.last));
+        // A whole last step is not rounded.
+        let short = !(!ending | !ends.fraction.less(one));
+        let width = widths.all();
+        for i in row * width..(row + 1) * width {
+            let (b, a) = (self.kept[i - width], self.kept[i]);
+            let cut = b + ends.fraction * (a - b);
+            self.kept[i] = L::select(ended, b, L::select(short, cut, a));
+        }
+        self.active.push(L::select(ended, zero, one));
     }
 
     /// Whether everything is a finite number in lanes that have not ended.
     #[inline(always)]
     fn sound(&self, step: usize) -> bool {
         let zero = L::splat(0.0);
-        let coordinates = self.state.modes.iter().chain(&self.state.coordinates);
-        let sum = coordinates.fold(zero, |sum, c| sum + c.a);
-        let sum = self.state.increments.iter().fold(sum, |sum, p| sum + *p);
+        let mut sum = zero;
+        for c in &self.state.modes {
+            sum = sum + c.a;
+        }
+        for c in &self.state.coordinates {
+            sum = sum + c.a;
+        }
+        for p in &self.state.increments {
+            sum = sum + *p;
+        }
         let nought = sum - sum;
         let ended = self.group.ends.last.less(L::splat(step as f64));
         L::all(!(nought.less(zero) | !nought.less(L::splat(1.0))) | ended)
     }
 }
 
+/// Where a stretch of steps lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Where {
+    /// Before the bridge, which is at rest.
+    Approach,
+    /// With axles on the bridge.
+    Bridge,
+    /// Behind it.
+    Tail,
+}
+
 /// Marches groups of samples through the table.
 #[inline(always)]
 pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn() -> bool) -> Result<(), Trouble> {
     let Way { table, rows, look, closely } = *way;
-    let (width, axles, steps) = (rows.width(), table.axles(), table.path.steps);
+    let steps = table.path.steps;
+    let bodies = groups.first().map_or(0, |group| group.bodies.len());
+    let widths =
+        Widths { coordinates: rows.width(), axles: table.axles(), bodies, felt: rows.weight() == 1.0 };
+    let rates = rows.by_rates();
+    let width = widths.all();
+    // Whole chunks, so that each begins a stretch.
+    let longest = (KEPT / width / CHUNK).max(1) * CHUNK;
     let latest = groups.iter().map(|group| group.ends.latest).max().unwrap_or(steps);
     let mut travellers: Vec<Traveller<'_, '_, L>> = Vec::with_capacity(groups.len());
     for group in groups {
         let speed = group.geometry.speed;
-        let mut state = group.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
-        if state.modes.is_empty() && table.first == 0 {
-            state.modes = vec![Coordinate::rest(); table.modes];
-        }
+        let state = group.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
         let static_loads = group.stepper.static_loads();
-        let mut traveller =
-            Traveller { group, state, static_loads, kept: Kept::new(), active: Vec::with_capacity(CHUNK) };
+        let rows = longest.min(latest + 1) + 1;
+        let kept = vec![L::splat(0.0); rows * width];
+        let mut traveller = Traveller { group, state, static_loads, kept, active: Vec::new() };
         // Before the first step there is nothing: it stands for the one before.
-        traveller.keep(0, way, table.first == 0, false);
+        traveller.keep(0, &widths, rates, table.first == 0);
         travellers.push(traveller);
     }
-    let mut scratch = Vec::new();
-    let mut stops = table.stops.iter().enumerate().peekable();
+    let (mut scratch, mut glanced, mut between) = (Vec::new(), Vec::new(), Vec::new());
+    let mut stop = 0;
     let mut from = 0;
     while from <= latest {
-        let (bridge, tail) = (from >= table.first, from > steps);
-        let end = if !bridge {
-            table.first
-        } else if !tail {
-            steps + 1
+        let (place, end, most) = if from < table.first {
+            (Where::Approach, table.first, CHUNK)
+        } else if from <= steps {
+            (Where::Bridge, steps + 1, longest)
         } else {
-            latest + 1
+            (Where::Tail, latest + 1, CHUNK)
         };
-        let to = end.min(from + CHUNK);
+        let to = end.min(from + most);
         for traveller in &mut travellers {
             traveller.active.clear();
-            if bridge && traveller.state.modes.is_empty() {
+            if place != Where::Approach && traveller.state.modes.is_empty() {
                 traveller.state.modes = vec![Coordinate::rest(); table.modes];
             }
         }
@@ -312,62 +340,64 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
             for traveller in &mut travellers {
                 if step > 0 {
                     let Group { geometry, approach, stepper, .. } = &mut *traveller.group;
-                    let advanced = match bridge {
-                        true => stepper.advance(&mut traveller.state, geometry),
-                        false => approach.advance(&mut traveller.state, geometry),
+                    let advanced = match place {
+                        Where::Approach => approach.advance(&mut traveller.state, geometry),
+                        _ => stepper.advance(&mut traveller.state, geometry),
                     };
-                    advanced.map_err(|e| Trouble::Failed(step, Some(e)))?;
+                    if let Err(e) = advanced {
+                        return Err(Trouble::Failed(step, Some(e)));
+                    }
                 }
-                traveller.keep(step, way, bridge, tail);
+                let row = step - from + 1;
+                traveller.keep(row, &widths, rates, place != Where::Approach);
+                if place == Where::Tail {
+                    traveller.end(row, step, &widths);
+                }
                 if closely && !traveller.sound(step) {
                     return Err(Trouble::Failed(step, None));
                 }
             }
+            if (step - from) % CHUNK == CHUNK - 1 && !go_on() {
+                return Err(Trouble::Interrupted);
+            }
         }
-        let influence = if bridge && !tail { table.influence(from, rows, look, &mut scratch) } else { &[] };
-        let first_stop = stops.peek().map_or(table.stops.len(), |(number, _)| *number);
-        while stops.next_if(|(_, stop)| stop.step < to).is_some() {}
-        let end_stop = stops.peek().map_or(table.stops.len(), |(number, _)| *number);
-        let counted = L::splat(if bridge && !tail { 1.0 } else { 0.0 });
+        let chunks = if place == Where::Bridge { table.chunks(from, to, rows, look, &mut scratch) } else { Vec::new() };
+        let influence: Vec<&[f64]> = chunks.iter().map(|chunk| &chunk.influence[..]).collect();
+        let bounds: Vec<&[[f64; 2]]> = chunks.iter().map(|chunk| &chunk.bounds[..]).collect();
+        let stops_to = stop + table.stops[stop..].partition_point(|stop| stop.step < to);
+        let count = to - from;
         for traveller in &mut travellers {
             if !traveller.sound(to - 1) {
                 return Err(Trouble::Failed(to - 1, None));
             }
             let seen = &mut traveller.group.seen;
-            let kept = &traveller.kept;
-            seen.ride.take(kept, &traveller.static_loads, from, &traveller.active, counted);
-            if bridge {
-                let coordinates = &kept.coordinates[width..];
-                let zeros;
-                let felt = if rows.weight() == 1.0 {
-                    &kept.loads
-                } else {
-                    zeros = vec![L::splat(0.0); kept.loads.len()];
-                    &zeros
-                };
-                let count = to - from;
-                for (r, (watched, row)) in seen.steps.iter_mut().zip(&look.rows).enumerate() {
-                    if tail {
-                        watch_free(watched, &row.factors, coordinates, from);
-                    } else {
-                        let influence = &influence[r * count * axles..(r + 1) * count * axles];
-                        watch(watched, &row.factors, influence, coordinates, &felt[axles..], axles, from);
+            let kept = &traveller.kept[width..(count + 1) * width];
+            let active = (place == Where::Tail).then_some(&traveller.active[..]);
+            seen.ride.take(kept, &widths, &traveller.static_loads, from, active, place == Where::Bridge);
+            match place {
+                Where::Approach => {}
+                Where::Tail => watch_free(&mut seen.steps, &look.rows, kept, &widths, from),
+                Where::Bridge => {
+                    let survey = Survey {
+                        rows: &look.rows,
+                        influence: &influence,
+                        bounds: &bounds,
+                        steps: kept,
+                        widths,
+                        from,
+                    };
+                    survey.take(&mut seen.steps, &mut glanced);
+                    let jumps = if rates { widths.coordinates / 2 } else { widths.coordinates };
+                    for (number, stop) in table.stops[..stops_to].iter().enumerate().skip(stop) {
+                        let row = stop.step - from;
+                        let sides = [&traveller.kept[row * width..][..width], &traveller.kept[(row + 1) * width..][..width]];
+                        watch_stop(&mut seen.stops, &look.rows, stop, number, sides, &widths, jumps, &mut between);
                     }
                 }
-                for (number, stop) in table.stops[first_stop..end_stop].iter().enumerate() {
-                    let row = stop.step - from;
-                    let states = Between {
-                        coordinates: [row, row + 1].map(|row| &kept.coordinates[row * width..][..width]),
-                        loads: [row, row + 1].map(|row| &kept.loads[row * axles..][..axles]),
-                        jumps: if rows.by_rates() { width / 2 } else { width },
-                        weight: rows.weight(),
-                    };
-                    watch_stop(&mut seen.stops, stop, first_stop + number, &look.rows, &states);
-                }
             }
-            let bodies = traveller.group.bodies.len();
-            traveller.kept.forget(width, axles, bodies);
+            traveller.kept.copy_within(count * width..(count + 1) * width, 0);
         }
+        stop = stops_to;
         if !go_on() {
             return Err(Trouble::Interrupted);
         }
@@ -389,31 +419,35 @@ fn combine<L: Lane>(of_one: &[f64], loads: &[L], width: usize, out: &mut Vec<L>)
 #[inline(always)]
 pub fn rest<L: Lane>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
     let Way { table, rows, look, .. } = *way;
-    let (width, axles, steps) = (rows.width(), table.axles(), table.path.steps);
+    let (width, axles) = (rows.width(), table.axles());
     let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-    let coordinates_at = |step: usize, out: &mut Vec<L>| {
-        combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, width, out);
-    };
-    let (mut coordinates, mut scratch) = (Vec::new(), Vec::new());
-    coordinates_at(table.first.saturating_sub(1), &mut coordinates);
-    let on_axles: Vec<L> = (0..CHUNK * axles).map(|i| loads[i % axles]).collect();
-    let mut stops = table.stops.iter().enumerate().peekable();
-    for from in (table.first..=steps).step_by(CHUNK) {
-        let count = CHUNK.min(steps + 1 - from);
-        (from..from + count).for_each(|step| coordinates_at(step, &mut coordinates));
-        let influence = table.influence(from, rows, look, &mut scratch);
-        for (r, (watched, row)) in seen.steps.iter_mut().zip(&look.rows).enumerate() {
-            let influence = &influence[r * count * axles..(r + 1) * count * axles];
-            watch(watched, &row.factors, influence, &coordinates[width..], &on_axles[..count * axles], axles, from);
+    let widths = Widths { coordinates: width, axles, bodies: 0, felt: true };
+    let (mut scratch, mut glanced): (Vec<Chunk>, Vec<[L; 2]>) = (Vec::new(), Vec::new());
+    let mut steps = Vec::with_capacity(CHUNK * widths.all());
+    for from in (table.first..=table.path.steps).step_by(CHUNK) {
+        let to = (from + CHUNK).min(table.path.steps + 1);
+        steps.clear();
+        for step in from..to {
+            combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, width, &mut steps);
+            steps.extend_from_slice(loads);
+            steps.extend_from_slice(loads);
         }
-        while let Some((number, stop)) = stops.next_if(|(_, stop)| stop.step < from + count) {
-            let mut there = Vec::with_capacity(width);
-            combine(&stop.statics, loads, width, &mut there);
-            let states = Between { coordinates: [&there; 2], loads: [loads; 2], jumps: width, weight: 1.0 };
-            watch_stop(&mut seen.stops, stop, number, &look.rows, &states);
-        }
-        let keep = coordinates.len() - width;
-        coordinates.drain(..keep);
+        let chunks = table.chunks(from, to, rows, look, &mut scratch);
+        let survey = Survey {
+            rows: &look.rows,
+            influence: &[&chunks[0].influence],
+            bounds: &[&chunks[0].bounds],
+            steps: &steps,
+            widths,
+            from,
+        };
+        survey.take(&mut seen.steps, &mut glanced);
+    }
+    for (number, stop) in table.stops.iter().enumerate() {
+        let mut then = Vec::with_capacity(width + axles);
+        combine(&stop.statics, loads, width, &mut then);
+        then.extend_from_slice(loads);
+        watch_moment(&mut seen.stops, &look.rows, stop, number, &then);
     }
     seen
 }

@@ -9,11 +9,20 @@ use crate::road::random::Synthesis;
 use crate::road::spline::Taps;
 use crate::step::Surface;
 
-/// Steps that are recovered together, so that what they need stays near the processor.
-pub const CHUNK: usize = 64;
+/// Steps whose responses are bounded together.
+pub const CHUNK: usize = 32;
 
 /// Most influence numbers kept ready; beyond that they are worked out again for each block of samples.
 const READY: usize = 1 << 23;
+
+/// Influence of the axle loads over a chunk of steps.
+#[derive(Debug, Clone, Default)]
+pub struct Chunk {
+    /// On each row, by row, step and axle.
+    pub influence: Vec<f64>,
+    /// Least and largest, by row and axle.
+    pub bounds: Vec<[f64; 2]>,
+}
 
 /// The road below an axle.
 #[derive(Debug, Clone, Copy)]
@@ -97,8 +106,8 @@ pub struct Table {
     /// First step with an axle on the bridge, which is at rest till then.
     pub first: usize,
     /// Influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
-    /// [`Table::influence`].
-    ready: Option<Vec<Vec<f64>>>,
+    /// [`Table::chunks`].
+    ready: Option<Vec<Chunk>>,
     /// Moments between steps, in order.
     pub stops: Vec<Stop>,
 }
@@ -168,7 +177,7 @@ impl Table {
         if all <= READY {
             let chunks = (table.first..=steps).step_by(CHUNK);
             let filled = chunks.map(|from| {
-                let mut chunk = Vec::new();
+                let mut chunk = Chunk::default();
                 table.fill(from, rows, look, &mut chunk);
                 chunk
             });
@@ -188,29 +197,42 @@ impl Table {
         self.path.steps + self.path.beyond
     }
 
-    /// Steps of the chunk that begins at a step.
-    fn count(&self, from: usize) -> usize {
-        CHUNK.min(self.path.steps + 1 - from)
-    }
-
-    /// Influence of the axle loads on the rows in the chunk that begins at a step on the bridge: by row, step and axle.
-    pub fn influence<'a>(&'a self, from: usize, rows: &Rows, look: &Look, scratch: &'a mut Vec<f64>) -> &'a [f64] {
-        match &self.ready {
-            Some(ready) => &ready[(from - self.first) / CHUNK],
-            None => {
-                self.fill(from, rows, look, scratch);
-                scratch
-            }
+    /// The chunks of a stretch of steps that begins with a chunk, and ends with one or with the path.
+    pub fn chunks<'a>(
+        &'a self,
+        from: usize,
+        to: usize,
+        rows: &Rows,
+        look: &Look,
+        scratch: &'a mut Vec<Chunk>,
+    ) -> Vec<&'a Chunk> {
+        let count = (to - from).div_ceil(CHUNK);
+        let first = (from - self.first) / CHUNK;
+        if let Some(ready) = &self.ready {
+            return ready[first..first + count].iter().collect();
         }
+        scratch.resize_with(count.max(scratch.len()), Chunk::default);
+        for (i, chunk) in scratch[..count].iter_mut().enumerate() {
+            self.fill(from + i * CHUNK, rows, look, chunk);
+        }
+        scratch[..count].iter().collect()
     }
 
-    fn fill(&self, from: usize, rows: &Rows, look: &Look, chunk: &mut Vec<f64>) {
-        chunk.clear();
+    fn fill(&self, from: usize, rows: &Rows, look: &Look, chunk: &mut Chunk) {
         let axles = self.axles();
-        let places = &self.places[from * axles..(from + self.count(from)) * axles];
+        let to = (from + CHUNK).min(self.path.steps + 1);
+        let places = &self.places[from * axles..to * axles];
+        chunk.influence.clear();
+        chunk.bounds.clear();
         for row in &look.rows {
+            let start = chunk.influence.len();
             let influence = |place: &Place| place.map_or(0.0, |place| rows.influence_of(row.response, place));
-            chunk.extend(places.iter().map(influence));
+            chunk.influence.extend(places.iter().map(influence));
+            for axle in 0..axles {
+                let own = chunk.influence[start + axle..].iter().step_by(axles);
+                let bounds = own.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &g| [low.min(g), high.max(g)]);
+                chunk.bounds.push(bounds);
+            }
         }
     }
 

@@ -1,7 +1,12 @@
 //! What is seen of samples side by side as they pass: extremes and when, sums of squares, wheels off the road.
+//!
+//! A response is a sum of products, Σ factor·coordinate + Σ influence·load. Rounding being monotone, the same sum with
+//! every product at its largest over some steps is no less than any value the response takes there, to the last bit. So
+//! a glance at every few steps finds values that the extremes must reach, and of the steps between only those are looked
+//! at, one by one and in order, whose bounds reach them.
 
 use super::look::Row;
-use super::table::Stop;
+use super::table::{CHUNK, Stop};
 use crate::lane::Lane;
 
 /// Largest and smallest so far, and when: the number of a step, or of a stop.
@@ -36,41 +41,44 @@ impl<L: Lane> Watched<L> {
     #[inline(always)]
     pub fn take(&mut self, value: L, at: L) {
         let (above, below) = (self.max.less(value), value.less(self.min));
-        self.max = L::select(above, value, self.max);
         self.max_at = L::select(above, at, self.max_at);
-        self.min = L::select(below, value, self.min);
         self.min_at = L::select(below, at, self.min_at);
+        self.max = value.larger(self.max);
+        self.min = value.smaller(self.min);
     }
 }
 
-/// What recovery needs of each step: of one chunk, and of the step before it.
-#[derive(Debug, Clone)]
-pub struct Kept<L> {
-    /// What the rows multiply, by step.
-    pub coordinates: Vec<L>,
-    /// Axle loads [N], by step.
-    pub loads: Vec<L>,
-    /// Vertical accelerations of the bodies [m/s²], by step.
-    pub accelerations: Vec<L>,
+/// What a step leaves for recovery, in a row of numbers: coordinates, loads as the responses feel them, loads [N],
+/// vertical accelerations of the bodies [m/s²].
+#[derive(Debug, Clone, Copy)]
+pub struct Widths {
+    /// What the rows multiply.
+    pub coordinates: usize,
+    /// Axles.
+    pub axles: usize,
+    /// Bodies.
+    pub bodies: usize,
+    /// Whether responses feel the loads; by superposition they do not.
+    pub felt: bool,
 }
 
-impl<L: Lane> Kept<L> {
-    /// Nothing yet.
-    pub fn new() -> Self {
-        Kept { coordinates: Vec::new(), loads: Vec::new(), accelerations: Vec::new() }
-    }
-
-    /// Keeps only the last step.
+impl Widths {
+    /// Numbers of a step.
     #[inline(always)]
-    pub fn forget(&mut self, width: usize, axles: usize, bodies: usize) {
-        let last = |values: &mut Vec<L>, width: usize| {
-            let from = values.len() - width;
-            values.copy_within(from.., 0);
-            values.truncate(width);
-        };
-        last(&mut self.coordinates, width);
-        last(&mut self.loads, axles);
-        last(&mut self.accelerations, bodies);
+    pub fn all(&self) -> usize {
+        self.coordinates + 2 * self.axles + self.bodies
+    }
+
+    /// Where the loads begin.
+    #[inline(always)]
+    pub fn loads(&self) -> usize {
+        self.coordinates + self.axles
+    }
+
+    /// Where the accelerations begin.
+    #[inline(always)]
+    pub fn accelerations(&self) -> usize {
+        self.loads() + self.axles
     }
 }
 
@@ -108,129 +116,241 @@ impl<L: Lane> Ride<L> {
         }
     }
 
-    /// Takes in steps from number `from` on; `active` is one in lanes that still move, else zero, and `counted` one where
-    /// sums are to grow.
+    /// Takes in the rows of steps from number `from` on; `active` is one in lanes that still move, else zero, step by
+    /// step, and sums grow where the steps are `counted`.
     #[inline(always)]
-    pub fn take(&mut self, kept: &Kept<L>, static_loads: &[L], from: usize, active: &[L], counted: L) {
+    pub fn take(
+        &mut self,
+        rows: &[L],
+        widths: &Widths,
+        static_loads: &[L],
+        from: usize,
+        active: Option<&[L]>,
+        counted: bool,
+    ) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let axles = self.loads.len();
         for (k, static_load) in static_loads.iter().enumerate() {
             let (mut watched, [mut sum, mut squares]) = (self.loads[k], self.sums[k]);
             let (mut aloft, mut lift_offs, mut grounded) = (self.aloft[k], self.lift_offs[k], self.grounded[k]);
-            let mut at = L::splat(from as f64);
-            for (loads, active) in kept.loads[axles..].chunks_exact(axles).zip(active) {
-                let load = loads[k];
-                watched.take(load, at);
-                let deviation = counted * (load - *static_load);
-                sum = sum + deviation;
-                squares = squares + deviation * deviation;
+            for (i, row) in rows.chunks_exact(widths.all()).enumerate() {
+                let load = row[widths.loads() + k];
+                watched.take(load, L::splat((from + i) as f64));
+                if counted {
+                    let deviation = load - *static_load;
+                    sum = sum + deviation;
+                    squares = squares + deviation * deviation;
+                }
                 // Exactly zero is what a wheel off the road carries.
-                let now = L::select(load.less(zero) | zero.less(load), one, zero);
-                aloft = aloft + *active * (one - now);
-                lift_offs = lift_offs + *active * (grounded * (one - now));
-                grounded = now;
-                at = at + one;
+                let off = !(load.less(zero) | zero.less(load));
+                if L::any(off) || L::any(grounded.less(one)) {
+                    let now = L::select(off, zero, one);
+                    let active = active.map_or(one, |active| active[i]);
+                    aloft = aloft + active * (one - now);
+                    lift_offs = lift_offs + active * (grounded * (one - now));
+                    grounded = now;
+                }
             }
             (self.loads[k], self.sums[k]) = (watched, [sum, squares]);
             (self.aloft[k], self.lift_offs[k], self.grounded[k]) = (aloft, lift_offs, grounded);
         }
-        let bodies = self.accelerations.len();
         for (b, (largest, squares)) in self.accelerations.iter_mut().zip(&mut self.squares).enumerate() {
-            for accelerations in kept.accelerations[bodies..].chunks_exact(bodies) {
-                let a = accelerations[b];
-                *largest = largest.larger(a.magnitude());
-                *squares = *squares + counted * (a * a);
+            let (mut most, mut sum) = (*largest, *squares);
+            for row in rows.chunks_exact(widths.all()) {
+                let a = row[widths.accelerations() + b];
+                most = most.larger(a.magnitude());
+                if counted {
+                    sum = sum + a * a;
+                }
+            }
+            (*largest, *squares) = (most, sum);
+        }
+    }
+}
+
+/// One response at a step.
+#[inline(always)]
+fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
+    let mut value = L::splat(factors[0]) * row[0];
+    for (factor, a) in factors[1..].iter().zip(&row[1..]) {
+        value = value + L::splat(*factor) * *a;
+    }
+    for (g, load) in influence.iter().zip(&row[factors.len()..]) {
+        value = value + L::splat(*g) * *load;
+    }
+    value
+}
+
+/// Extremes of every response over a stretch of steps with loads on the bridge.
+#[derive(Debug)]
+pub struct Survey<'a, L> {
+    /// The responses.
+    pub rows: &'a [Row],
+    /// Influence of the loads, by response, step and axle, chunk by chunk of the stretch.
+    pub influence: &'a [&'a [f64]],
+    /// Least and largest influence in each chunk, by response and axle.
+    pub bounds: &'a [&'a [[f64; 2]]],
+    /// Rows of the steps.
+    pub steps: &'a [L],
+    /// Numbers in these.
+    pub widths: Widths,
+    /// Number of the first step.
+    pub from: usize,
+}
+
+impl<L: Lane> Survey<'_, L> {
+    /// Looks at all of it. `glanced` is scratch.
+    #[inline(always)]
+    pub fn take(&self, watched: &mut [Watched<L>], glanced: &mut Vec<[L; 2]>) {
+        // What is known when this is compiled runs much faster: the usual numbers of modes and axles.
+        macro_rules! sizes {
+            ($($c:literal $a:literal),*) => {
+                match (self.widths.coordinates, self.widths.axles) {
+                    $(($c, $a) => self.of_sizes($c, $a, watched, glanced),)*
+                    (c, a) => self.of_sizes(c, a, watched, glanced),
+                }
+            };
+        }
+        sizes!(2 2, 2 3, 2 5, 3 2, 3 3, 3 5, 4 2, 4 3, 4 5)
+    }
+
+    #[inline(always)]
+    fn of_sizes(&self, c: usize, a: usize, watched: &mut [Watched<L>], glanced: &mut Vec<[L; 2]>) {
+        let width = self.widths.all();
+        let felt = c + a;
+        let chunks = || self.steps.chunks(CHUNK * width).zip(self.influence).enumerate();
+        // The glance.
+        glanced.clear();
+        for seen in watched.iter() {
+            glanced.push([seen.max, seen.min]);
+        }
+        for (_, (steps, influence)) in chunks() {
+            let count = steps.len() / width;
+            let middle = count / 2;
+            let row = &steps[middle * width..][..felt];
+            for (r, (Row { factors, .. }, [most, least])) in self.rows.iter().zip(glanced.iter_mut()).enumerate() {
+                let influence = &influence[(r * count + middle) * a..][..a];
+                let value = value(&factors[..c], influence, row);
+                *most = value.larger(*most);
+                *least = value.smaller(*least);
+            }
+        }
+        let mut largest = [L::splat(0.0); MOST_BOUNDED];
+        let mut smallest = [L::splat(0.0); MOST_BOUNDED];
+        let bounded = felt <= MOST_BOUNDED;
+        for (chunk, (steps, influence)) in chunks() {
+            let count = steps.len() / width;
+            if bounded {
+                for i in 0..felt {
+                    let (mut most, mut least) = (steps[i], steps[i]);
+                    for step in 1..count {
+                        let now = steps[step * width + i];
+                        most = now.larger(most);
+                        least = now.smaller(least);
+                    }
+                    (largest[i], smallest[i]) = (most, least);
+                }
+            }
+            for (r, Row { factors, .. }) in self.rows.iter().enumerate() {
+                let factors = &factors[..c];
+                let mut seen = watched[r];
+                if bounded {
+                    let bounds = &self.bounds[chunk][r * a..][..a];
+                    let [high, low] = reach(factors, bounds, &largest[..felt], &smallest[..felt]);
+                    let [most, least] = glanced[r];
+                    let above = !(!seen.max.less(high) | high.less(most));
+                    let below = !(!low.less(seen.min) | least.less(low));
+                    if !L::any(above | below) {
+                        continue;
+                    }
+                }
+                let influence = &influence[r * count * a..][..count * a];
+                for step in 0..count {
+                    let row = &steps[step * width..][..felt];
+                    let value = value(factors, &influence[step * a..][..a], row);
+                    seen.take(value, L::splat((self.from + chunk * CHUNK + step) as f64));
+                }
+                watched[r] = seen;
             }
         }
     }
 }
 
-/// The extremes of one row over the steps of a chunk from number `from` on.
+/// Most numbers of a step whose bounds are kept.
+const MOST_BOUNDED: usize = 64;
+
+/// Bounds of a response where coordinates and loads are between their largest and smallest.
 #[inline(always)]
-pub fn watch<L: Lane>(
-    watched: &mut Watched<L>,
-    factors: &[f64],
-    influence: &[f64],
-    coordinates: &[L],
-    loads: &[L],
-    axles: usize,
-    from: usize,
+fn reach<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], largest: &[L], smallest: &[L]) -> [L; 2] {
+    let term = |factor: f64, i: usize| {
+        let ends = [L::splat(factor) * largest[i], L::splat(factor) * smallest[i]];
+        if factor < 0.0 { [ends[1], ends[0]] } else { ends }
+    };
+    let [mut high, mut low] = term(factors[0], 0);
+    for (i, &factor) in factors.iter().enumerate().skip(1) {
+        let [most, least] = term(factor, i);
+        (high, low) = (high + most, low + least);
+    }
+    for (k, [from, to]) in bounds.iter().enumerate() {
+        let i = factors.len() + k;
+        let (from, to) = (L::splat(*from), L::splat(*to));
+        let corners = [to * largest[i], to * smallest[i], from * largest[i], from * smallest[i]];
+        high = high + corners[0].larger(corners[1]).larger(corners[2].larger(corners[3]));
+        low = low + corners[0].smaller(corners[1]).smaller(corners[2].smaller(corners[3]));
+    }
+    [high, low]
+}
+
+/// Takes in steps at which no axle is on the bridge.
+#[inline(always)]
+pub fn watch_free<L: Lane>(watched: &mut [Watched<L>], rows: &[Row], steps: &[L], widths: &Widths, from: usize) {
+    for (seen, row) in watched.iter_mut().zip(rows) {
+        for (i, step) in steps.chunks_exact(widths.all()).enumerate() {
+            let value = value(&row.factors, &[], &step[..row.factors.len()]);
+            seen.take(value, L::splat((from + i) as f64));
+        }
+    }
+}
+
+/// Takes in a moment between two steps, given their rows. From coordinate number `jumps` on they jump with a load: Ä
+/// follows it at once, A and Ȧ do not. `between` is scratch.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // each is one thing
+pub fn watch_stop<L: Lane>(
+    watched: &mut [Watched<L>],
+    rows: &[Row],
+    stop: &Stop,
+    number: usize,
+    [before, after]: [&[L]; 2],
+    widths: &Widths,
+    jumps: usize,
+    between: &mut Vec<L>,
 ) {
-    let mut own = *watched;
-    let mut at = from as f64;
-    let steps =
-        coordinates.chunks_exact(factors.len()).zip(loads.chunks_exact(axles)).zip(influence.chunks_exact(axles));
-    for ((coordinates, loads), influence) in steps {
-        let mut value = L::splat(0.0);
-        for (a, factor) in coordinates.iter().zip(factors) {
-            value = value + L::splat(*factor) * *a;
-        }
-        for (load, g) in loads.iter().zip(influence) {
-            value = value + L::splat(*g) * *load;
-        }
-        own.take(value, L::splat(at));
-        at += 1.0;
-    }
-    *watched = own;
-}
-
-/// The extremes of one row over steps at which no axle is on the bridge.
-#[inline(always)]
-pub fn watch_free<L: Lane>(watched: &mut Watched<L>, factors: &[f64], coordinates: &[L], from: usize) {
-    let mut at = from as f64;
-    for coordinates in coordinates.chunks_exact(factors.len()) {
-        let mut value = L::splat(0.0);
-        for (a, factor) in coordinates.iter().zip(factors) {
-            value = value + L::splat(*factor) * *a;
-        }
-        watched.take(value, L::splat(at));
-        at += 1.0;
-    }
-}
-
-/// The states of two neighbouring steps: what the rows multiply, and the loads that they see.
-pub struct Between<'a, L> {
-    /// Coordinates before and after.
-    pub coordinates: [&'a [L]; 2],
-    /// Loads before and after.
-    pub loads: [&'a [L]; 2],
-    /// From which coordinate on they jump with a load: Ä follows it at once, A and Ȧ do not.
-    pub jumps: usize,
-    /// How much of a load the rows see: all, or nothing by superposition.
-    pub weight: f64,
-}
-
-/// Takes in a moment between two steps.
-#[inline(always)]
-pub fn watch_stop<L: Lane>(seen: &mut [Watched<L>], stop: &Stop, number: usize, rows: &[Row], states: &Between<'_, L>) {
-    let Between { coordinates, loads, jumps, weight } = *states;
     let fraction = L::splat(stop.fraction);
-    let mix = |b: L, a: L| b + fraction * (a - b);
+    let (c, a) = (widths.coordinates, widths.axles);
+    between.clear();
+    for i in 0..c + a {
+        between.push(before[i] + fraction * (after[i] - before[i]));
+    }
+    if let Some(step) = stop.jump {
+        let side = if step == stop.step { after } else { before };
+        between[jumps..c].copy_from_slice(&side[jumps..c]);
+        between[c + stop.axle] = side[c + stop.axle];
+    }
+    watch_moment(watched, rows, stop, number, between);
+}
+
+/// Takes in a moment at which an axle passes, given coordinates and loads then.
+#[inline(always)]
+pub fn watch_moment<L: Lane>(watched: &mut [Watched<L>], rows: &[Row], stop: &Stop, number: usize, then: &[L]) {
     let at = L::splat(number as f64);
-    let jumped = stop.jump.map(|step| usize::from(step == stop.step));
-    let coordinate = |i: usize| match jumped {
-        Some(row) if i >= jumps => coordinates[row][i],
-        _ => mix(coordinates[0][i], coordinates[1][i]),
-    };
-    let weight = L::splat(weight);
-    let load = |k: usize| match jumped {
-        Some(row) if k == stop.axle => weight * loads[row][k],
-        _ => weight * mix(loads[0][k], loads[1][k]),
-    };
-    let axles = loads[0].len();
-    for (&r, influence) in stop.rows.iter().zip(stop.influence.chunks_exact(axles)) {
-        let mut value = L::splat(0.0);
-        for (i, factor) in rows[r].factors.iter().enumerate() {
-            value = value + L::splat(*factor) * coordinate(i);
-        }
-        for (k, g) in influence.iter().enumerate() {
-            value = value + L::splat(*g) * load(k);
-        }
-        seen[r].take(value, at);
+    let c = rows.first().map_or(0, |row| row.factors.len());
+    for (&r, influence) in stop.rows.iter().zip(stop.influence.chunks_exact(then.len() - c)) {
+        let value = value(&rows[r].factors, influence, then);
+        watched[r].take(value, at);
         if let Some((tip, sign)) = stop.tip
             && tip == r
         {
-            seen[r].take(value + L::splat(sign) * load(stop.axle), at);
+            watched[r].take(value + L::splat(sign) * then[c + stop.axle], at);
         }
     }
 }
