@@ -57,11 +57,8 @@ pub trait Lane:
     /// e to the power of self, the same bits on every machine.
     fn exp(self) -> Self;
 
-    /// Magnitude.
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        Self::select(self.less(Self::splat(0.0)), -self, self)
-    }
+    /// Magnitude: without the sign bit.
+    fn magnitude(self) -> Self;
 }
 
 impl Lane for f64 {
@@ -95,6 +92,10 @@ impl Lane for f64 {
 
     fn any(mask: bool) -> bool {
         mask
+    }
+
+    fn magnitude(self) -> Self {
+        self.abs()
     }
 
     fn exp(self) -> Self {

@@ -132,6 +132,31 @@ impl<const N: usize> Lane for Wide<N> {
         any != 0
     }
 
+    // As one choice for each sample, which is one instruction for several of them.
+    #[inline(always)]
+    fn larger(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] = if other.0[i] < self.0[i] { self.0[i] } else { other.0[i] };
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn smaller(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] = if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn magnitude(mut self) -> Self {
+        for i in 0..N {
+            self.0[i] = self.0[i].abs();
+        }
+        self
+    }
+
     #[inline(always)]
     fn exp(mut self) -> Self {
         for i in 0..N {
