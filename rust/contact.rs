@@ -7,7 +7,7 @@ use crate::lane::Lane;
 /// Most sweeps of the coupled solve; two to four are usual.
 const SWEEPS: usize = 200;
 
-/// Change of a contact force, relative to the weight, at which it counts as found.
+/// Error of a contact force, relative to the weight, at which it counts as found.
 const SETTLED: f64 = 1e-13;
 
 /// What a contact force follows: a weighted sum of the shortening d and its derivatives, δ = value·d + rate·ḋ +
@@ -52,8 +52,9 @@ pub struct Contact<L> {
 /// The suspension of a massless axle, its rate taken as ṡ = σ s − η over a step.
 #[derive(Debug, Clone, Copy)]
 struct Suspension<L> {
-    /// k_s + σ c_s.
+    /// k_s + σ c_s, and one over it.
     stiffness: L,
+    give: L,
     /// c_s.
     damping: L,
     /// k_t + σ c_t.
@@ -67,6 +68,8 @@ struct Suspension<L> {
     /// dampers too weak to keep up with the springs in one step.
     per_step: L,
     trapezoidal: bool,
+    /// Whether any lane has dampers, so that rates count.
+    damped: bool,
 }
 
 impl<L: Lane> Suspension<L> {
@@ -74,6 +77,7 @@ impl<L: Lane> Suspension<L> {
         let of = |f: fn(&Suspension<f64>) -> f64| L::from_fn(|s| f(each[s]));
         Suspension {
             stiffness: of(|c| c.stiffness),
+            give: of(|c| c.give),
             damping: of(|c| c.damping),
             tyre: of(|c| c.tyre),
             tyre_damping: of(|c| c.tyre_damping),
@@ -81,6 +85,7 @@ impl<L: Lane> Suspension<L> {
             law: Law::gather(&each.iter().map(|c| &c.law).collect::<Vec<_>>()),
             per_step: of(|c| c.per_step),
             trapezoidal: each[0].trapezoidal,
+            damped: each.iter().any(|c| c.damped),
         }
     }
 
@@ -122,8 +127,11 @@ impl<L: Lane> Contact<L> {
                     onset = tyre_stiffness / (tyre_damping + suspension_damping);
                     stiffness = suspension_damping * onset;
                 }
+                let both = suspension_stiffness + per_step * suspension_damping;
                 (!damped || h > 0.0).then(|| Suspension {
-                    stiffness: L::splat(suspension_stiffness + per_step * suspension_damping),
+                    stiffness: L::splat(both),
+                    give: L::splat(1.0 / both),
+                    damped,
                     damping: L::splat(suspension_damping),
                     tyre: L::splat(tyre_stiffness + per_step * tyre_damping),
                     tyre_damping: L::splat(tyre_damping),
@@ -190,19 +198,29 @@ impl<L: Lane> Contact<L> {
     /// Everything in p = law(u − S p) that holds for a whole step, for a suspension that was at `before` at its start.
     #[inline(always)]
     pub fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
-        let softened = L::splat(1.0) / (L::splat(1.0) + self.stiffness * compliance);
-        let gain = self.stiffness * softened;
-        match &self.suspension {
-            None => Prepared { gain, past: L::splat(0.0), slope: L::splat(0.0), beside: L::splat(0.0) },
-            Some(suspension) => {
-                let past = suspension.past(before);
-                Prepared {
-                    gain,
-                    past: suspension.tyre_damping * past * softened,
-                    slope: suspension.tyre * softened,
-                    beside: suspension.initial + suspension.damping * past,
-                }
-            }
+        let hardening = L::splat(1.0) + self.stiffness * compliance;
+        let Some(suspension) = &self.suspension else {
+            return Prepared { gain: self.stiffness / hardening, ..Prepared::nothing() };
+        };
+        // With the tyre's p = A − B s the suspension meets f = a − (B + k_s) s; 1/(1 + k S) and 1/(B + k_s) from the
+        // reciprocal of their product.
+        let joint = suspension.tyre + suspension.stiffness * hardening;
+        let reciprocal = L::splat(1.0) / (hardening * joint);
+        let softened = reciprocal * joint;
+        let slope = suspension.tyre * softened;
+        let (mut stuck, mut beside) = (L::splat(0.0), suspension.initial);
+        if suspension.damped {
+            let past = suspension.past(before);
+            stuck = suspension.tyre_damping * past * softened;
+            beside = beside + suspension.damping * past;
+        }
+        Prepared {
+            gain: self.stiffness * softened,
+            stuck: stuck - slope * before.shortening,
+            beside: beside - suspension.stiffness * before.shortening,
+            share: suspension.tyre * (reciprocal * hardening),
+            resistance: slope + suspension.stiffness,
+            reach: L::splat(0.0),
         }
     }
 
@@ -211,39 +229,56 @@ impl<L: Lane> Contact<L> {
     /// The law rises with δ and S ≥ 0, so the solution is unique.
     #[inline(always)]
     pub fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
-        let p = match &self.suspension {
-            None => prepared.gain * u,
-            Some(suspension) => {
-                // From the tyre p = A − B s, which the suspension meets.
-                let top = prepared.gain * u + prepared.past;
-                let b = prepared.slope + suspension.stiffness;
-                let (s, _) = suspension.law.meet(top + prepared.beside, b, before);
-                top - prepared.slope * s
-            }
-        };
+        let mut p = prepared.gain * u;
+        if let Some(suspension) = &self.suspension {
+            p = p + prepared.stuck;
+            let trial = p + prepared.beside;
+            let friction = suspension.law.friction(trial, prepared.resistance, before);
+            p = p - prepared.share * (trial - friction);
+        }
         // In this order, so that what is not a number stays so and is found.
         self.floor.larger(p)
     }
 
     /// The suspension at the end of a step that ended with increment p.
     #[inline(always)]
-    pub fn settle(&self, p: L, before: &Stroke<L>) -> Stroke<L> {
+    pub fn settle(&self, p: L, prepared: &Prepared<L>, before: &Stroke<L>) -> Stroke<L> {
         let Some(suspension) = &self.suspension else { return *before };
-        let past = suspension.past(before);
-        let a = p + suspension.initial + suspension.damping * past;
-        let (shortening, friction) = suspension.law.meet(a, suspension.stiffness, before);
-        Stroke { shortening, rate: suspension.per_step * shortening - past, friction }
+        let trial = p + prepared.beside;
+        let friction = suspension.law.friction(trial, suspension.stiffness, before);
+        let shortening = before.shortening + (trial - friction) * suspension.give;
+        let rate = match suspension.damped {
+            true => suspension.per_step * shortening - suspension.past(before),
+            false => before.rate,
+        };
+        Stroke { shortening, rate, friction }
     }
 }
 
-/// What holds for a whole step of one axle: from the tyre p = gain·u + past − slope·s.
+/// What holds for a whole step of one element.
+///
+/// Of a contact: while the suspension stays where it was, p = gain·u + stuck, and it carries p + beside against friction;
+/// of what is too much for friction the contact loses its share. Of a friction element: as long as it sticks,
+/// f = gain·u + stuck.
 #[derive(Debug, Clone, Copy)]
 pub struct Prepared<L> {
     gain: L,
-    past: L,
-    slope: L,
-    /// What the suspension carries besides its spring and the change of its friction: f₀ + c_s η.
+    stuck: L,
     beside: L,
+    share: L,
+    /// By how much less force there is for friction, per unit that the suspension moves.
+    resistance: L,
+    /// By how much the forces of the elements before this one may still be off, all together, per change of this one's.
+    reach: L,
+}
+
+impl<L: Lane> Prepared<L> {
+    /// Of an element that does nothing.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        let zero = L::splat(0.0);
+        Prepared { gain: zero, stuck: zero, beside: zero, share: zero, resistance: zero, reach: zero }
+    }
 }
 
 /// A friction element between parts that have mass: f − f₀ is its force, beside a spring that is part of the vehicle.
@@ -280,15 +315,35 @@ impl<L: Lane> Rubbing<L> {
         }
     }
 
-    /// Force increment for shortening u − S (f − f₀), and the element then.
+    /// What holds for a whole step.
     #[inline(always)]
-    fn solve(&self, u: L, compliance: L, before: &Stroke<L>) -> (L, Stroke<L>) {
+    fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
+        let gain = if self.moves { L::splat(1.0) / compliance } else { L::splat(0.0) };
+        Prepared { gain, stuck: self.initial - gain * before.shortening, ..Prepared::nothing() }
+    }
+
+    /// Friction force for shortening u − S (f − f₀).
+    #[inline(always)]
+    fn friction(&self, trial: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
+        if self.moves { self.law.friction(trial, prepared.gain, before) } else { before.friction }
+    }
+
+    /// The same as force increment.
+    #[inline(always)]
+    fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
+        self.friction(prepared.gain * u + prepared.stuck, prepared, before) - self.initial
+    }
+
+    /// The element at the end of a step.
+    #[inline(always)]
+    fn settle(&self, u: L, compliance: L, prepared: &Prepared<L>, before: &Stroke<L>) -> Stroke<L> {
         if !self.moves {
-            return (before.friction - self.initial, *before);
+            return *before;
         }
-        let stiffness = L::splat(1.0) / compliance;
-        let (shortening, friction) = self.law.meet(self.initial + stiffness * u, stiffness, before);
-        (friction - self.initial, Stroke { shortening, rate: before.rate, friction })
+        let trial = prepared.gain * u + prepared.stuck;
+        let friction = self.friction(trial, prepared, before);
+        let shortening = before.shortening + (trial - friction) * compliance;
+        Stroke { shortening, rate: before.rate, friction }
     }
 }
 
@@ -299,66 +354,86 @@ pub struct Elements<L> {
     pub contacts: Vec<Contact<L>>,
     /// All friction elements between parts that have mass.
     pub rubbing: Vec<Rubbing<L>>,
+    /// Error of a contact force [N] at which it counts as found.
+    tolerance: L,
 }
 
 impl<L: Lane> Elements<L> {
-    /// Number of unknown forces.
-    #[inline(always)]
-    pub fn len(&self) -> usize {
-        self.contacts.len() + self.rubbing.len()
+    /// Of these.
+    pub fn new(contacts: Vec<Contact<L>>, rubbing: Vec<Rubbing<L>>) -> Self {
+        let weight = contacts.iter().fold(L::splat(0.0), |sum, c| sum + c.static_load);
+        Elements { contacts, rubbing, tolerance: weight * L::splat(SETTLED) }
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
+    /// Number of contacts and of friction elements.
+    #[inline(always)]
+    pub fn counts(&self) -> [usize; 2] {
+        [self.contacts.len(), self.rubbing.len()]
     }
 
     /// Solves p_k = law_k(u_k − Σ S_kj p_j) for all elements, starting from the p given; `compliance` is S by rows, and
-    /// lanes that are `frozen` keep their p.
+    /// lanes that are `frozen` keep their p. The `counts` are those of the elements, said again for callers that know
+    /// them.
     ///
     /// One element after the other with its own equation solved exactly (nonlinear Gauss–Seidel): the laws rise and S
     /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
-    /// and lift-off alike. (Tyre damping adds a part to S that is not symmetric, of the order of the step.) A lane that
-    /// has settled is frozen, hence no sample depends on its neighbours. False if one did not.
+    /// and lift-off alike. (Tyre damping adds a part to S that is not symmetric, of the order of the step.) After a
+    /// sweep an equation is off only by what the later forces have changed since, and no law follows its u more steeply
+    /// than while friction holds, by the gain: that bounds what is left. A lane that has settled is frozen, hence no
+    /// sample depends on its neighbours. False if one did not.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // each is one thing
     pub fn solve(
         &self,
+        counts: [usize; 2],
         u: &[L],
         compliance: &[L],
         before: &[Stroke<L>],
-        prepared: &mut Vec<Prepared<L>>,
+        prepared: &mut [Prepared<L>],
         p: &mut [L],
         frozen: L::Mask,
     ) -> bool {
-        let n = self.len();
-        prepared.clear();
-        prepared.extend(self.contacts.iter().enumerate().map(|(k, c)| c.prepare(compliance[k * n + k], &before[k])));
-        let weight = self.contacts.iter().fold(L::splat(0.0), |sum, c| sum + c.static_load);
-        let tolerance = weight * L::splat(SETTLED);
+        let [contacts, n] = [counts[0], counts[0] + counts[1]];
+        let (u, compliance, before) = (&u[..n], &compliance[..n * n], &before[..n]);
+        let (prepared, p) = (&mut prepared[..n], &mut p[..n]);
+        let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..counts[1]]);
+        for k in 0..n {
+            let own = compliance[k * n + k];
+            let mut of = if k < contacts {
+                wheels[k].prepare(own, &before[k])
+            } else {
+                rubbing[k - contacts].prepare(own, &before[k])
+            };
+            for j in 0..k {
+                of.reach = of.reach + prepared[j].gain * compliance[j * n + k].magnitude();
+            }
+            prepared[k] = of;
+        }
         let mut done = frozen;
         for _ in 0..SWEEPS {
-            let mut change = L::splat(0.0);
+            let mut left = L::splat(0.0);
             for k in 0..n {
-                if self.contacts.get(k).is_some_and(|contact| contact.constant) {
+                if k < contacts && wheels[k].constant {
                     continue;
                 }
-                let row = &compliance[k * n..(k + 1) * n];
+                let row = &compliance[k * n..][..n];
                 let mut others = u[k];
-                for (j, (s, p)) in row.iter().zip(p.iter()).enumerate() {
+                for j in 0..n {
                     if j != k {
-                        others = others - *s * *p;
+                        others = others - row[j] * p[j];
                     }
                 }
-                let found = match self.contacts.get(k) {
-                    Some(contact) => contact.solve(others, &prepared[k], &before[k]),
-                    None => self.rubbing[k - self.contacts.len()].solve(others, row[k], &before[k]).0,
+                let found = if k < contacts {
+                    wheels[k].solve(others, &prepared[k], &before[k])
+                } else {
+                    rubbing[k - contacts].solve(others, &prepared[k], &before[k])
                 };
                 let next = L::select(done, p[k], found);
-                change = change.larger((next - p[k]).magnitude());
+                left = left + prepared[k].reach * (next - p[k]).magnitude();
                 p[k] = next;
             }
             // A single axle is exact at once; a NaN never counts as settled.
-            done = done | change.less(tolerance);
+            done = done | left.less(self.tolerance);
             if n <= 1 || L::all(done) {
                 return true;
             }
@@ -368,16 +443,29 @@ impl<L: Lane> Elements<L> {
 
     /// Commits suspensions and friction elements to the end of a step that ended with the forces p.
     #[inline(always)]
-    pub fn settle(&self, u: &[L], compliance: &[L], p: &[L], strokes: &mut [Stroke<L>]) {
-        let n = self.len();
-        for (k, contact) in self.contacts.iter().enumerate() {
-            strokes[k] = contact.settle(p[k], &strokes[k]);
+    pub fn settle(
+        &self,
+        counts: [usize; 2],
+        u: &[L],
+        compliance: &[L],
+        prepared: &[Prepared<L>],
+        p: &[L],
+        strokes: &mut [Stroke<L>],
+    ) {
+        let [contacts, n] = [counts[0], counts[0] + counts[1]];
+        let (prepared, p, strokes) = (&prepared[..n], &p[..n], &mut strokes[..n]);
+        for (k, contact) in self.contacts[..contacts].iter().enumerate() {
+            strokes[k] = contact.settle(p[k], &prepared[k], &strokes[k]);
         }
-        for (i, rubbing) in self.rubbing.iter().enumerate() {
-            let k = self.contacts.len() + i;
-            let row = &compliance[k * n..(k + 1) * n];
-            let others = (0..n).filter(|&j| j != k).fold(u[k], |sum, j| sum - row[j] * p[j]);
-            strokes[k] = rubbing.solve(others, row[k], &strokes[k]).1;
+        for (k, rubbing) in (contacts..n).zip(&self.rubbing) {
+            let row = &compliance[k * n..][..n];
+            let mut others = u[k];
+            for j in 0..n {
+                if j != k {
+                    others = others - row[j] * p[j];
+                }
+            }
+            strokes[k] = rubbing.settle(others, row[k], &prepared[k], &strokes[k]);
         }
     }
 }

@@ -84,38 +84,35 @@ impl<L: Lane> Law<L> {
     }
 
     /// Shortening and friction where the law, coming from `before`, meets the falling line f = a − b s.
+    #[inline(always)]
+    pub fn meet(&self, a: L, b: L, before: &Stroke<L>) -> (L, L) {
+        let trial = a - b * before.shortening;
+        let friction = self.friction(trial, b, before);
+        (before.shortening + (trial - friction) / b, friction)
+    }
+
+    /// Friction where the law, coming from `before`, meets the falling line f = trial − b (s − s₀), s₀ its shortening
+    /// before.
     ///
     /// The law and its spring rise with s, and b is at least the spring's stiffness, so there is one such point.
     #[inline(always)]
-    pub fn meet(&self, a: L, b: L, before: &Stroke<L>) -> (L, L) {
-        let s = before.shortening;
+    pub fn friction(&self, trial: L, b: L, before: &Stroke<L>) -> L {
         match *self {
-            Law::Rigid { limit } => {
-                let trial = a - b * s;
-                let slips = limit.less(trial.magnitude());
-                if L::any(slips) {
-                    let friction = trial.smaller(limit).larger(-limit);
-                    (s + (trial - friction) / b, friction)
-                } else {
-                    (s, trial)
-                }
-            }
+            Law::Rigid { limit } => trial.smaller(limit).larger(-limit),
             Law::Elastic { limit, give } => {
                 let softening = b * give;
-                let trial = (a - b * s + softening * before.friction) / (L::splat(1.0) + softening);
-                let friction = trial.smaller(limit).larger(-limit);
-                (s + (a - b * s - friction) / b, friction)
+                let trial = (trial + softening * before.friction) / (L::splat(1.0) + softening);
+                trial.smaller(limit).larger(-limit)
             }
-            Law::Leaf { limit, decay, lag } => leaf(a, b, before, limit, decay, lag),
+            Law::Leaf { limit, decay, lag } => leaf(trial - before.friction, b, before, limit, decay, lag),
         }
     }
 }
 
 #[inline(always)]
-fn leaf<L: Lane>(a: L, b: L, before: &Stroke<L>, limit: L, decay: L, lag: L) -> (L, L) {
+fn leaf<L: Lane>(excess: L, b: L, before: &Stroke<L>, limit: L, decay: L, lag: L) -> L {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     // Everything in the direction in which it moves: x ≥ 0 from here, and the force there on tends to `far`.
-    let excess = a - b * before.shortening - before.friction;
     let sense = L::select(excess.less(zero), -one, one);
     let excess = sense * excess;
     let far = limit - lag;
@@ -134,6 +131,5 @@ fn leaf<L: Lane>(a: L, b: L, before: &Stroke<L>, limit: L, decay: L, lag: L) -> 
             break;
         }
     }
-    let fading = (-x / decay).exp();
-    (before.shortening + sense * x, sense * (far + apart * fading))
+    sense * (far + apart * (-x / decay).exp())
 }

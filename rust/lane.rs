@@ -69,11 +69,8 @@ pub trait Lane:
     /// The numbers of these bits.
     fn from_bits(bits: Self::Bits) -> Self;
 
-    /// Magnitude.
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        Self::select(self.less(Self::splat(0.0)), -self, self)
-    }
+    /// Magnitude: without the sign bit.
+    fn magnitude(self) -> Self;
 }
 
 impl Lane for f64 {
@@ -109,6 +106,10 @@ impl Lane for f64 {
 
     fn any(mask: bool) -> bool {
         mask
+    }
+
+    fn magnitude(self) -> Self {
+        self.abs()
     }
 
     fn exp(self) -> Self {

@@ -15,33 +15,27 @@ pub enum ModalDamping {
     Coupled(Mat<f64>),
 }
 
-/// (I + ½hD + βh²Ω²)⁻¹, and D.
+/// (I + ½hD + βh²Ω²)⁻¹, D and Ω².
 #[derive(Debug, Clone)]
-pub enum ModalSolve<L> {
-    /// Classical damping: mode by mode.
-    Diagonal {
-        /// Diagonal of D.
-        damping: Vec<L>,
-        /// Diagonal of the inverse.
-        inverse: Vec<L>,
-    },
-    /// All modes together.
-    Full {
-        /// D by rows.
-        damping: Vec<L>,
-        /// The inverse by rows.
-        inverse: Vec<L>,
-    },
+pub struct ModalSolve<L> {
+    /// Classical damping, of each mode by itself: D and the inverse are diagonal, and only that is kept; else by rows.
+    pub classical: bool,
+    omega2: Vec<L>,
+    damping: Vec<L>,
+    inverse: Vec<L>,
 }
 
 impl<L: Lane> ModalSolve<L> {
     /// For modes of circular frequencies `omega` [rad/s] and steps of `h` [s] with Newmark's `beta`.
     pub fn new(omega: &[f64], damping: &ModalDamping, h: f64, beta: f64) -> Self {
+        let omega2 = omega.iter().map(|w| L::splat(w * w)).collect();
         match damping {
             ModalDamping::Classical(ratios) => {
                 let d: Vec<f64> = omega.iter().zip(ratios).map(|(w, z)| 2.0 * z * w).collect();
                 let inverse = omega.iter().zip(&d).map(|(w, d)| 1.0 / (1.0 + 0.5 * h * d + beta * h * h * w * w));
-                ModalSolve::Diagonal {
+                ModalSolve {
+                    classical: true,
+                    omega2,
                     inverse: inverse.map(L::splat).collect(),
                     damping: d.into_iter().map(L::splat).collect(),
                 }
@@ -53,52 +47,59 @@ impl<L: Lane> ModalSolve<L> {
                 });
                 let inverse = matrix.partial_piv_lu().inverse();
                 let by_rows = |m: &Mat<f64>| (0..n * n).map(|ij| L::splat(m[(ij / n, ij % n)])).collect();
-                ModalSolve::Full { damping: by_rows(d), inverse: by_rows(&inverse) }
+                ModalSolve { classical: false, omega2, damping: by_rows(d), inverse: by_rows(&inverse) }
             }
         }
     }
 
     /// From those of each sample.
     pub fn gather(each: &[&ModalSolve<f64>]) -> Self {
-        let parts: Vec<[&Vec<f64>; 2]> = each
-            .iter()
-            .map(|solve| match solve {
-                ModalSolve::Diagonal { damping, inverse } | ModalSolve::Full { damping, inverse } => [damping, inverse],
-            })
-            .collect();
-        let of = |part: usize| (0..parts[0][part].len()).map(|i| L::from_fn(|s| parts[s][part][i])).collect();
-        match each[0] {
-            ModalSolve::Diagonal { .. } => ModalSolve::Diagonal { damping: of(0), inverse: of(1) },
-            ModalSolve::Full { .. } => ModalSolve::Full { damping: of(0), inverse: of(1) },
+        let of = |part: fn(&ModalSolve<f64>) -> &Vec<f64>| -> Vec<L> {
+            (0..part(each[0]).len()).map(|i| L::from_fn(|s| part(each[s])[i])).collect()
+        };
+        ModalSolve {
+            classical: each[0].classical,
+            omega2: of(|solve| &solve.omega2),
+            damping: of(|solve| &solve.damping),
+            inverse: of(|solve| &solve.inverse),
         }
     }
 
-    /// Damping force on a mode.
+    /// Number of modes.
+    pub fn modes(&self) -> usize {
+        self.omega2.len()
+    }
+
+    /// Forces with which the modes resist: of dampers and springs.
     #[inline(always)]
-    pub fn damping_force(&self, mode: usize, predicted: &[Coordinate<L>]) -> L {
-        match self {
-            ModalSolve::Diagonal { damping, .. } => damping[mode] * predicted[mode].v,
-            ModalSolve::Full { damping, .. } => {
-                let row = &damping[mode * predicted.len()..];
-                predicted.iter().zip(row).fold(L::splat(0.0), |sum, (c, d)| sum + *d * c.v)
+    pub fn resist(&self, classical: bool, predicted: &[Coordinate<L>], forces: &mut [L]) {
+        let modes = forces.len();
+        let (omega2, predicted) = (&self.omega2[..modes], &predicted[..modes]);
+        for m in 0..modes {
+            let mut force = omega2[m] * predicted[m].x;
+            if classical {
+                force = force + self.damping[..modes][m] * predicted[m].v;
+            } else {
+                for (d, q) in self.damping[m * modes..][..modes].iter().zip(predicted) {
+                    force = force + *d * q.v;
+                }
             }
+            forces[m] = force;
         }
     }
 
     /// Accelerations under modal forces.
     #[inline(always)]
-    pub fn apply(&self, forces: &[L], accelerations: &mut [L]) {
-        match self {
-            ModalSolve::Diagonal { inverse, .. } => {
-                for ((a, f), e) in accelerations.iter_mut().zip(forces).zip(inverse) {
-                    *a = *e * *f;
-                }
-            }
-            ModalSolve::Full { inverse, .. } => {
-                for (a, row) in accelerations.iter_mut().zip(inverse.chunks_exact(forces.len())) {
-                    *a = forces.iter().zip(row).fold(L::splat(0.0), |sum, (f, e)| sum + *e * *f);
-                }
-            }
+    pub fn apply(&self, classical: bool, forces: &[L], accelerations: &mut [L]) {
+        let modes = accelerations.len();
+        let forces = &forces[..modes];
+        for m in 0..modes {
+            accelerations[m] = if classical {
+                self.inverse[..modes][m] * forces[m]
+            } else {
+                let row = &self.inverse[m * modes..][..modes];
+                forces.iter().zip(row).fold(L::splat(0.0), |sum, (f, e)| sum + *e * *f)
+            };
         }
     }
 }

@@ -272,6 +272,11 @@ impl<L: Lane> Geometry<L> for Prescribed<'_> {
         L::never()
     }
 
+    fn steady(&self) -> bool {
+        let next = &self.motions[(self.step + 1) * self.contacts..];
+        next.iter().take(self.contacts).all(|motion| motion.a == 0.0)
+    }
+
     fn motion(&self, contact: usize) -> Coordinate<L> {
         let Coordinate { x, v, a } = self.here()[contact];
         Coordinate { x: L::splat(x), v: L::splat(v), a: L::splat(a) }

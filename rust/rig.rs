@@ -32,8 +32,10 @@ pub struct Rig<L> {
     /// Accelerations under unit forces along the road at the contacts.
     surge_receptance: Vec<L>,
     predicted: Vec<Coordinate<L>>,
-    /// Accelerations without element forces.
+    /// Accelerations without element forces; zero while nothing but those acts.
     free: Vec<L>,
+    /// The end of the step without element forces.
+    unloaded: Vec<Coordinate<L>>,
     /// −(C v + K x) of the prediction.
     resisting: Vec<L>,
 }
@@ -77,6 +79,7 @@ impl<L: Lane> Rig<L> {
             surge_receptance: flat(&surge_receptance),
             predicted: vec![Coordinate::rest(); size],
             free: vec![zero; size],
+            unloaded: vec![Coordinate::rest(); size],
             resisting: vec![zero; size],
         }
     }
@@ -108,21 +111,37 @@ impl<L: Lane> Rig<L> {
             surge_receptance: of(&|rig| &rig.surge_receptance),
             predicted: vec![Coordinate::rest(); first.size],
             free: vec![L::splat(0.0); first.size],
+            unloaded: vec![Coordinate::rest(); first.size],
             resisting: vec![L::splat(0.0); first.size],
         }
     }
 
-    /// Begins a step.
+    /// Whether there are no springs and dampers between the coordinates.
+    pub fn bare(&self) -> bool {
+        self.linear.is_none()
+    }
+
+    /// Whether forces along the road move the coordinates.
+    pub fn surges(&self) -> bool {
+        self.surge_rows.is_some()
+    }
+
+    /// Begins a step, `passive` if nothing but element forces acts on the coordinates in it.
     #[inline(always)]
-    pub fn predict(&mut self, newmark: &Newmark<L>, state: &[Coordinate<L>]) {
-        for (predicted, c) in self.predicted.iter_mut().zip(state) {
+    pub fn predict(&mut self, newmark: &Newmark<L>, state: &[Coordinate<L>], passive: bool) {
+        let size = state.len();
+        let predicted = &mut self.predicted[..size];
+        for (predicted, c) in predicted.iter_mut().zip(state) {
             *predicted = newmark.predict(*c);
         }
+        if passive {
+            return;
+        }
         if let Some([damping, stiffness]) = &self.linear {
-            let rows = damping.chunks_exact(self.size).zip(stiffness.chunks_exact(self.size));
-            for (resisting, (c, k)) in self.resisting.iter_mut().zip(rows) {
+            for (i, resisting) in self.resisting[..size].iter_mut().enumerate() {
+                let (c, k) = (&damping[i * size..][..size], &stiffness[i * size..][..size]);
                 let mut sum = L::splat(0.0);
-                for ((c, k), q) in c.iter().zip(k).zip(&self.predicted) {
+                for ((c, k), q) in c.iter().zip(k).zip(predicted.iter()) {
                     sum = sum - (*c * q.v + *k * q.x);
                 }
                 *resisting = sum;
@@ -130,53 +149,64 @@ impl<L: Lane> Rig<L> {
         }
     }
 
-    /// Works out the accelerations without element forces, under forces along the road at the contacts [N].
+    /// Works out the step without element forces, under forces along the road at the contacts [N].
     #[inline(always)]
-    pub fn surge(&mut self, along: &[L]) {
-        let zero = L::splat(0.0);
-        match &self.linear {
-            Some(_) => {
-                for (free, row) in self.free.iter_mut().zip(self.inverse.chunks_exact(self.size)) {
-                    *free = row.iter().zip(&self.resisting).fold(zero, |sum, (e, f)| sum + *e * *f);
+    pub fn surge(&mut self, newmark: &Newmark<L>, along: &[L]) {
+        let size = self.size;
+        let free = &mut self.free[..size];
+        for (i, free) in free.iter_mut().enumerate() {
+            *free = L::splat(0.0);
+            if self.linear.is_some() {
+                for (e, f) in self.inverse[i * size..][..size].iter().zip(&self.resisting) {
+                    *free = *free + *e * *f;
                 }
             }
-            None => self.free.fill(zero),
         }
         if self.surge_rows.is_some() {
-            for (receptance, force) in self.surge_receptance.chunks_exact(self.size).zip(along) {
-                for (free, r) in self.free.iter_mut().zip(receptance) {
+            for (k, force) in along.iter().enumerate() {
+                for (free, r) in free.iter_mut().zip(&self.surge_receptance[k * size..][..size]) {
                     *free = *free + *r * *force;
                 }
             }
         }
+        for ((unloaded, predicted), a) in self.unloaded.iter_mut().zip(&self.predicted).zip(free.iter()) {
+            *unloaded = newmark.correct(*predicted, *a);
+        }
     }
 
-    /// Shortening of an element without element forces, and its rate.
+    /// How an element's shortening follows from the coordinates, and what they are without element forces.
     #[inline(always)]
-    pub fn shortening(&self, newmark: &Newmark<L>, element: usize) -> [L; 2] {
-        let row = &self.rows[element * self.size..(element + 1) * self.size];
-        let mut sums = [L::splat(0.0); 2];
-        for ((b, q), a) in row.iter().zip(&self.predicted).zip(&self.free) {
-            let end = newmark.correct(*q, *a);
-            sums[0] = sums[0] + *b * end.x;
-            sums[1] = sums[1] + *b * end.v;
-        }
-        sums
+    pub fn unloaded(&self, element: usize, size: usize, passive: bool) -> impl Iterator<Item = (&L, &Coordinate<L>)> {
+        let unloaded = if passive { &self.predicted[..size] } else { &self.unloaded[..size] };
+        self.rows[element * size..][..size].iter().zip(unloaded)
     }
 
     /// Accelerations of element i under unit forces of all elements.
-    #[inline(always)]
     pub fn coupling(&self, i: usize) -> &[L] {
         &self.coupling[i * self.elements..(i + 1) * self.elements]
     }
 
     /// Ends a step under the element forces: contacts', then friction's.
     #[inline(always)]
-    pub fn correct(&self, newmark: &Newmark<L>, contacts: &[L], frictions: &[L], state: &mut [Coordinate<L>]) {
-        for (i, (state, predicted)) in state.iter_mut().zip(&self.predicted).enumerate() {
-            let receptances = self.receptance.chunks_exact(self.size);
-            let forces = contacts.iter().chain(frictions);
-            let a = receptances.zip(forces).fold(self.free[i], |a, (receptance, force)| a - receptance[i] * *force);
+    pub fn correct(
+        &self,
+        newmark: &Newmark<L>,
+        contacts: &[L],
+        frictions: &[L],
+        state: &mut [Coordinate<L>],
+        passive: bool,
+    ) {
+        let size = state.len();
+        let predicted = &self.predicted[..size];
+        let receptance = &self.receptance[..(contacts.len() + frictions.len()) * size];
+        for (i, (state, predicted)) in state.iter_mut().zip(predicted).enumerate() {
+            let mut a = if passive { L::splat(0.0) } else { self.free[i] };
+            for (k, force) in contacts.iter().enumerate() {
+                a = a - receptance[k * size + i] * *force;
+            }
+            for (k, force) in (contacts.len()..).zip(frictions) {
+                a = a - receptance[k * size + i] * *force;
+            }
             *state = newmark.correct(*predicted, a);
         }
     }

@@ -50,6 +50,12 @@ pub trait Geometry<L: Lane> {
     /// still to move; in all others nothing changes, to the bit.
     fn follow(&mut self, contact: usize, motion: Coordinate<L>, new_step: bool) -> L::Mask;
 
+    /// Whether no contact gains or loses speed at the end of the next step, so that nothing pushes the vehicles along
+    /// the road.
+    fn steady(&self) -> bool {
+        false
+    }
+
     /// Position from the left end of the bridge, speed and acceleration along it.
     fn motion(&self, contact: usize) -> Coordinate<L>;
 
@@ -178,22 +184,103 @@ impl Unsettled {
     }
 }
 
+/// What decides which way a step goes. It is passed by value: where a caller gives it in literals, every loop below runs
+/// a known number of times, and what is not asked for is not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Form {
+    modes: usize,
+    contacts: usize,
+    /// Friction elements.
+    rubbing: usize,
+    vehicles: usize,
+    /// Coordinates of all vehicles.
+    coordinates: usize,
+    /// Whether all contact forces follow from the shortening alone.
+    plain: bool,
+    /// Whether each mode is damped by itself.
+    classical: bool,
+    /// Whether there are no springs and dampers between the vehicles' coordinates.
+    bare: bool,
+    /// Whether nothing but element forces acts on the vehicles' coordinates.
+    passive: bool,
+}
+
+/// One rigid body on two axles without mass, on a bridge of three modes.
+const USUAL: Form = Form {
+    modes: 3,
+    contacts: 2,
+    rubbing: 0,
+    vehicles: 1,
+    coordinates: 2,
+    plain: true,
+    classical: true,
+    bare: true,
+    passive: true,
+};
+
+/// The same on its way to the bridge.
+const USUAL_APPROACH: Form = Form { modes: 0, ..USUAL };
+
+impl Form {
+    fn of<L: Lane>(modal: &ModalSolve<L>, units: &[Unit<L>], elements: &Elements<L>) -> Self {
+        let [contacts, rubbing] = elements.counts();
+        Form {
+            modes: modal.modes(),
+            contacts,
+            rubbing,
+            vehicles: units.len(),
+            coordinates: units.last().map_or(0, |unit| unit.coordinates.end),
+            plain: elements.contacts.iter().all(|contact| contact.weights.plain),
+            classical: modal.classical,
+            bare: units.iter().all(|unit| unit.rig.bare()),
+            passive: units.iter().all(|unit| unit.rig.bare() && !unit.rig.surges()),
+        }
+    }
+
+    /// Number of contacts and friction elements.
+    #[inline(always)]
+    fn counts(self) -> [usize; 2] {
+        [self.contacts, self.rubbing]
+    }
+
+    /// Number of elements.
+    #[inline(always)]
+    fn elements(self) -> usize {
+        self.contacts + self.rubbing
+    }
+
+    /// Contacts, friction elements and coordinates of a vehicle.
+    #[inline(always)]
+    fn part<L>(self, unit: &Unit<L>) -> [Range<usize>; 3] {
+        match self.vehicles {
+            1 => [0..self.contacts, self.contacts..self.elements(), 0..self.coordinates],
+            _ => [unit.contacts.clone(), unit.rubbing.clone(), unit.coordinates.clone()],
+        }
+    }
+}
+
 /// The time step: constant coefficients of a run, and scratch so that stepping allocates nothing.
 #[derive(Debug, Clone)]
 pub struct Stepper<L> {
+    form: Form,
     newmark: Newmark<L>,
-    omega2: Vec<L>,
     modal: ModalSolve<L>,
     units: Vec<Unit<L>>,
     elements: Elements<L>,
-    predicted: Vec<Coordinate<L>>,
+    /// What the vehicles add to the compliance, by rows.
+    above: Vec<L>,
+    surge_settled: L,
     travel: Vec<Coordinate<L>>,
     guess: Vec<Coordinate<L>>,
-    surge_settled: L,
     along: Vec<L>,
-    /// Modal accelerations without axle loads, and under the static ones.
-    free: Vec<L>,
-    loaded: Vec<L>,
+    predicted: Vec<Coordinate<L>>,
+    /// Forces with which the modes resist as predicted.
+    resisting: Vec<L>,
+    /// Modal forces under the static axle loads, and accelerations.
+    forces: Vec<L>,
+    accelerations: Vec<L>,
+    /// The end of the step under the static axle loads.
+    loaded: Vec<Coordinate<L>>,
     /// Φ⁰, contact by contact.
     shapes: Vec<L>,
     /// What unit modal accelerations do to δ, contact by contact.
@@ -203,12 +290,26 @@ pub struct Stepper<L> {
     compliance: Vec<L>,
     offset: Vec<L>,
     prepared: Vec<Prepared<L>>,
-    forces: Vec<L>,
 }
 
-#[inline(always)]
-fn dot<L: Lane>(a: &[L], b: &[L]) -> L {
-    a.iter().zip(b).fold(L::splat(0.0), |sum, (a, b)| sum + *a * *b)
+/// What the vehicles add to the compliance of the elements, by rows.
+fn above<L: Lane>(newmark: &Newmark<L>, units: &[Unit<L>], elements: &Elements<L>) -> Vec<L> {
+    let n: usize = elements.counts().iter().sum();
+    let mut above = vec![L::splat(0.0); n * n];
+    // A vehicle without coordinates adds nothing.
+    for unit in units.iter().filter(|unit| unit.rig.size > 0) {
+        for own in 0..unit.rig.elements {
+            let k = unit.element(own);
+            let factor = match elements.contacts.get(k).map(|contact| contact.weights) {
+                Some(weights) => weights.value * newmark.new + weights.rate * newmark.half_h,
+                None => newmark.new,
+            };
+            for (other, coupling) in unit.rig.coupling(own).iter().enumerate() {
+                above[k * n + unit.element(other)] = factor * *coupling;
+            }
+        }
+    }
+    above
 }
 
 impl<L: Lane> Stepper<L> {
@@ -236,32 +337,51 @@ impl<L: Lane> Stepper<L> {
         }
         let points = vehicles.iter().flat_map(|v| &v.assembly.contacts);
         let frictions = vehicles.iter().flat_map(|v| &v.assembly.frictions);
-        let elements = Elements {
-            contacts: points.map(|point| Contact::new(point, gravity, h, !lift_off)).collect(),
-            rubbing: frictions.map(|element| Rubbing::new(element, h)).collect(),
-        };
-        let (modes, n, zero) = (omega.len(), elements.len(), L::splat(0.0));
+        let elements = Elements::new(
+            points.map(|point| Contact::new(point, gravity, h, !lift_off)).collect(),
+            frictions.map(|element| Rubbing::new(element, h)).collect(),
+        );
+        let modal = ModalSolve::new(omega, damping, h, beta);
         let plain = elements.contacts.iter().all(|contact| contact.weights.plain);
+        let surge_settled = L::splat(if plain { SURGE_SETTLED } else { SURGE_SETTLED_BY_RATES });
+        Stepper::of(Newmark::new(h, beta), modal, units, elements, surge_settled)
+    }
+
+    /// Of these parts, and with room to work in.
+    fn of(
+        newmark: Newmark<L>,
+        modal: ModalSolve<L>,
+        units: Vec<Unit<L>>,
+        elements: Elements<L>,
+        surge_settled: L,
+    ) -> Self {
+        let form = Form::of(&modal, &units, &elements);
+        let Form { modes, contacts, .. } = form;
+        let n = form.elements();
+        let zeros = |count: usize| vec![L::splat(0.0); count];
+        let rest = |count: usize| vec![Coordinate::rest(); count];
         Stepper {
-            newmark: Newmark::new(h, beta),
-            omega2: omega.iter().map(|w| L::splat(w * w)).collect(),
-            modal: ModalSolve::new(omega, damping, h, beta),
+            above: above(&newmark, &units, &elements),
+            travel: rest(units.len()),
+            guess: rest(form.coordinates),
+            along: zeros(contacts),
+            predicted: rest(modes),
+            resisting: zeros(modes),
+            forces: zeros(modes),
+            accelerations: zeros(modes),
+            loaded: rest(modes),
+            shapes: zeros(modes * contacts),
+            senses: zeros(modes * contacts),
+            receptance: zeros(modes * contacts),
+            compliance: zeros(n * n),
+            offset: zeros(n),
+            prepared: vec![Prepared::nothing(); n],
+            form,
+            newmark,
+            modal,
             units,
             elements,
-            predicted: vec![Coordinate::rest(); modes],
-            travel: vec![Coordinate::rest(); vehicles.len()],
-            guess: vec![Coordinate::rest(); vehicles.iter().map(|v| v.assembly.mass.nrows()).max().unwrap_or(0)],
-            surge_settled: L::splat(if plain { SURGE_SETTLED } else { SURGE_SETTLED_BY_RATES }),
-            along: vec![zero; contacts],
-            free: vec![zero; modes],
-            loaded: vec![zero; modes],
-            shapes: vec![zero; modes * contacts],
-            senses: vec![zero; modes * contacts],
-            receptance: vec![zero; modes * contacts],
-            compliance: vec![zero; n * n],
-            offset: vec![zero; n],
-            prepared: Vec::with_capacity(contacts),
-            forces: vec![zero; modes],
+            surge_settled,
         }
     }
 
@@ -269,23 +389,23 @@ impl<L: Lane> Stepper<L> {
     ///
     /// An axle that stands on the bridge at the start loads it suddenly, as does one on a road that is not level there;
     /// the first accelerations say so. To find them this stepper must have been made for steps of zero length.
-    #[inline(always)]
+    #[inline(never)]
     pub fn start(&mut self, speeds: &[L], geometry: &impl Geometry<L>) -> Result<State<L>, Unsettled> {
         let zero = L::splat(0.0);
         let contacts = self.elements.contacts.iter().map(|c| c.at_rest());
-        let last = self.units.last().map_or(0, |unit| unit.coordinates.end);
+        let form = self.form;
         let mut state = State {
-            modes: vec![Coordinate::rest(); self.omega2.len()],
-            coordinates: vec![Coordinate::rest(); last],
+            modes: vec![Coordinate::rest(); form.modes],
+            coordinates: vec![Coordinate::rest(); form.coordinates],
             travel: speeds.iter().map(|&v| Coordinate { x: zero, v, a: zero }).collect(),
-            increments: vec![zero; self.elements.len()],
+            increments: vec![zero; form.elements()],
             strokes: contacts.chain(self.elements.rubbing.iter().map(|r| r.at_rest())).collect(),
-            along: vec![zero; self.elements.contacts.len()],
-            along_before: vec![zero; self.elements.contacts.len()],
+            along: vec![zero; form.contacts],
+            along_before: vec![zero; form.contacts],
         };
-        self.predict(&state);
-        self.push_along(&mut state, geometry);
-        self.react(&mut state, geometry, L::never())?;
+        self.predict(form, &state);
+        self.push_along(form, &mut state, geometry);
+        self.react(form, &mut state, geometry, L::never())?;
         // The loads of the first instant do not depend on how the vehicles surge under them.
         for (u, unit) in self.units.iter_mut().enumerate().filter(|(_, unit)| unit.propulsion == Propulsion::Rolling) {
             let mut force = zero;
@@ -294,9 +414,9 @@ impl<L: Lane> Stepper<L> {
                 force = force + state.along[contact];
             }
             state.travel[u].a = force / unit.rig.total_mass;
-            unit.rig.surge(&state.along[unit.contacts.clone()]);
+            unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
         }
-        self.react(&mut state, geometry, L::never())?;
+        self.react(form, &mut state, geometry, L::never())?;
         for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&self.offset) {
             *stroke = contact.at_onset(*delta);
         }
@@ -307,8 +427,6 @@ impl<L: Lane> Stepper<L> {
     /// From one stepper for each sample, of the same vehicles, modes and scheme but for their numbers.
     pub fn gather(each: &[&Stepper<f64>]) -> Self {
         let first = each[0];
-        let numbers = |f: &dyn Fn(&Stepper<f64>) -> f64| L::from_fn(|i| f(each[i]));
-        let zeros = |count: usize| vec![L::splat(0.0); count];
         let units = first.units.iter().enumerate().map(|(u, unit)| {
             let rigs: Vec<&Rig<f64>> = each.iter().map(|s| &s.units[u].rig).collect();
             let vector = |of: &dyn Fn(&Unit<f64>) -> &Vec<f64>| -> Vec<L> {
@@ -330,28 +448,13 @@ impl<L: Lane> Stepper<L> {
             .map(|k| Contact::gather(&each.iter().map(|s| &s.elements.contacts[k]).collect::<Vec<_>>()));
         let rubbing = (0..first.elements.rubbing.len())
             .map(|k| Rubbing::gather(&each.iter().map(|s| &s.elements.rubbing[k]).collect::<Vec<_>>()));
-        let modes = first.omega2.len();
-        Stepper {
-            newmark: Newmark::gather(&each.iter().map(|s| &s.newmark).collect::<Vec<_>>()),
-            omega2: (0..modes).map(|m| numbers(&|s| s.omega2[m])).collect(),
-            modal: ModalSolve::gather(&each.iter().map(|s| &s.modal).collect::<Vec<_>>()),
-            units: units.collect(),
-            elements: Elements { contacts: contacts.collect(), rubbing: rubbing.collect() },
-            predicted: vec![Coordinate::rest(); modes],
-            travel: vec![Coordinate::rest(); first.travel.len()],
-            guess: vec![Coordinate::rest(); first.guess.len()],
-            surge_settled: numbers(&|s| s.surge_settled),
-            along: zeros(first.along.len()),
-            free: zeros(modes),
-            loaded: zeros(modes),
-            shapes: zeros(first.shapes.len()),
-            senses: zeros(first.senses.len()),
-            receptance: zeros(first.receptance.len()),
-            compliance: zeros(first.compliance.len()),
-            offset: zeros(first.offset.len()),
-            prepared: Vec::with_capacity(first.elements.contacts.len()),
-            forces: zeros(modes),
-        }
+        Stepper::of(
+            Newmark::gather(&each.iter().map(|s| &s.newmark).collect::<Vec<_>>()),
+            ModalSolve::gather(&each.iter().map(|s| &s.modal).collect::<Vec<_>>()),
+            units.collect(),
+            Elements::new(contacts.collect(), rubbing.collect()),
+            L::from_fn(|s| each[s].surge_settled),
+        )
     }
 
     /// Static loads of all contacts [N].
@@ -363,6 +466,8 @@ impl<L: Lane> Stepper<L> {
     pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
         self.units[vehicle].rig = standing;
         self.units[vehicle].propulsion = Propulsion::Prescribed;
+        self.above = above(&self.newmark, &self.units, &self.elements);
+        self.form = Form::of(&self.modal, &self.units, &self.elements);
     }
 
     /// Puts a vehicle's brakes on, or says how far they are.
@@ -373,15 +478,37 @@ impl<L: Lane> Stepper<L> {
     /// Advances the state by one step.
     #[inline(always)]
     pub fn advance(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
-        self.predict(state);
-        geometry.advance();
-        let rolling = self.units.iter().any(|unit| unit.propulsion == Propulsion::Rolling);
-        if !rolling {
-            self.push_along(state, geometry);
-            self.react(state, geometry, L::never())?;
-            self.settle(state);
-            return Ok(());
+        if self.units.iter().any(|unit| unit.propulsion == Propulsion::Rolling) {
+            return self.roll(state, geometry);
         }
+        let form = Form { passive: self.form.passive || self.form.bare && geometry.steady(), ..self.form };
+        match form {
+            USUAL => self.drive(USUAL, state, geometry),
+            USUAL_APPROACH => self.drive(USUAL_APPROACH, state, geometry),
+            form => self.drive(form, state, geometry),
+        }
+    }
+
+    /// One step of vehicles all of whose motion is prescribed.
+    #[inline(always)]
+    fn drive(&mut self, form: Form, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
+        self.predict(form, state);
+        geometry.advance();
+        if !form.passive {
+            self.push_along(form, state, geometry);
+        }
+        self.react(form, state, geometry, L::never())?;
+        self.settle(form, state);
+        Ok(())
+    }
+
+    /// One step with vehicles that roll freely, whose axle positions follow from it. Only single samples do, so it need
+    /// not be there once more for every kind of vectors.
+    #[inline(never)]
+    fn roll(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
+        let form = self.form;
+        self.predict(form, state);
+        geometry.advance();
         self.guess_along(state);
         for (u, unit) in self.units.iter().enumerate() {
             self.travel[u] = self.newmark.predict(state.travel[u]);
@@ -393,10 +520,10 @@ impl<L: Lane> Stepper<L> {
                 place(unit, travel, guess, geometry, true);
             }
         }
-        self.push_along(state, geometry);
+        self.push_along(form, state, geometry);
         let mut settled = L::never();
         for _ in 0..PASSES {
-            self.react(state, geometry, settled)?;
+            self.react(form, state, geometry, settled)?;
             let mut moving = L::never();
             for (u, unit) in self.units.iter().enumerate() {
                 if unit.propulsion != Propulsion::Rolling {
@@ -417,33 +544,31 @@ impl<L: Lane> Stepper<L> {
             // A settled lane is left as it is, so that further passes repeat it bit for bit.
             settled = !moving;
             if L::all(settled) {
-                self.settle(state);
+                self.settle(form, state);
                 return Ok(());
             }
             for unit in self.units.iter_mut().filter(|unit| unit.propulsion == Propulsion::Rolling) {
                 for contact in unit.contacts.clone() {
                     state.along[contact] = L::select(moving, self.along[contact], state.along[contact]);
                 }
-                unit.rig.surge(&state.along[unit.contacts.clone()]);
+                unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
             }
         }
         Err(Unsettled::AxlePositions)
     }
 
-    /// Everything at the end of the step if accelerations there were zero, and modal accelerations without loads.
+    /// Everything at the end of the step if accelerations there were zero, and how the modes resist that.
     #[inline(always)]
-    fn predict(&mut self, state: &State<L>) {
-        for unit in &mut self.units {
-            unit.rig.predict(&self.newmark, &state.coordinates[unit.coordinates.clone()]);
+    fn predict(&mut self, form: Form, state: &State<L>) {
+        for unit in &mut self.units[..form.vehicles] {
+            let [_, _, coordinates] = form.part(unit);
+            unit.rig.predict(&self.newmark, &state.coordinates[coordinates], form.passive);
         }
-        for (predicted, mode) in self.predicted.iter_mut().zip(&state.modes) {
+        let predicted = &mut self.predicted[..form.modes];
+        for (predicted, mode) in predicted.iter_mut().zip(&state.modes[..form.modes]) {
             *predicted = self.newmark.predict(*mode);
         }
-        for m in 0..self.predicted.len() {
-            let resisting = self.modal.damping_force(m, &self.predicted) + self.omega2[m] * self.predicted[m].x;
-            self.forces[m] = -resisting;
-        }
-        self.modal.apply(&self.forces, &mut self.free);
+        self.modal.resist(form.classical, predicted, &mut self.resisting[..form.modes]);
     }
 
     /// Forces along the road as they go on from the last two steps, where vehicles roll.
@@ -460,141 +585,166 @@ impl<L: Lane> Stepper<L> {
 
     /// Forces along the road to begin with: those that prescribed motion takes, or those of the last step.
     #[inline(always)]
-    fn push_along(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>) {
-        for unit in &mut self.units {
+    fn push_along(&mut self, form: Form, state: &mut State<L>, geometry: &impl Geometry<L>) {
+        for unit in &mut self.units[..form.vehicles] {
             if unit.propulsion == Propulsion::Prescribed {
                 for (contact, share) in unit.contacts.clone().zip(&unit.shares) {
                     state.along[contact] = L::splat(unit.direction) * geometry.motion(contact).a * *share;
                 }
             }
-            unit.rig.surge(&state.along[unit.contacts.clone()]);
+            unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
         }
     }
 
     /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
     #[inline(always)]
-    fn react(&mut self, state: &mut State<L>, geometry: &impl Geometry<L>, frozen: L::Mask) -> Result<(), Unsettled> {
-        self.couple(geometry);
-        if !self.elements.solve(
-            &self.offset,
-            &self.compliance,
-            &state.strokes,
-            &mut self.prepared,
-            &mut state.increments,
-            frozen,
-        ) {
+    fn react(
+        &mut self,
+        form: Form,
+        state: &mut State<L>,
+        geometry: &impl Geometry<L>,
+        frozen: L::Mask,
+    ) -> Result<(), Unsettled> {
+        self.sense(form, geometry);
+        self.couple(form);
+        self.sit(form);
+        let (prepared, increments) = (&mut self.prepared, &mut state.increments);
+        let (offset, compliance) = (&self.offset, &self.compliance);
+        if !self.elements.solve(form.counts(), offset, compliance, &state.strokes, prepared, increments, frozen) {
             return Err(Unsettled::ContactForces);
         }
-        self.move_bridge(state);
-        for unit in &self.units {
-            let (contacts, rubbing) = (unit.contacts.clone(), unit.rubbing.clone());
+        self.move_bridge(form, state);
+        for unit in &self.units[..form.vehicles] {
+            let [contacts, rubbing, coordinates] = form.part(unit);
             let forces = [&state.increments[contacts], &state.increments[rubbing]];
-            unit.rig.correct(&self.newmark, forces[0], forces[1], &mut state.coordinates[unit.coordinates.clone()]);
+            unit.rig.correct(&self.newmark, forces[0], forces[1], &mut state.coordinates[coordinates], form.passive);
         }
         Ok(())
     }
 
     /// Commits the suspensions to the end of the step; what moves as prescribed goes on.
     #[inline(always)]
-    fn settle(&self, state: &mut State<L>) {
-        self.elements.settle(&self.offset, &self.compliance, &state.increments, &mut state.strokes);
+    fn settle(&self, form: Form, state: &mut State<L>) {
+        let (offset, compliance, prepared) = (&self.offset, &self.compliance, &self.prepared);
+        self.elements.settle(form.counts(), offset, compliance, prepared, &state.increments, &mut state.strokes);
     }
 
-    /// What the elements follow without force increments, `offset`, and what the increments take off it, `compliance`.
+    /// The bridge below the contacts: where it would be under the static loads, what it does under others.
     #[inline(always)]
-    fn couple(&mut self, geometry: &impl Geometry<L>) {
-        let (modes, n) = (self.omega2.len(), self.elements.len());
+    fn sense(&mut self, form: Form, geometry: &impl Geometry<L>) {
+        let Form { modes, contacts, .. } = form;
         let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
-        for (k, shapes) in self.shapes.chunks_exact_mut(modes.max(1)).enumerate() {
-            geometry.shapes(k, shapes);
+        let (shapes, senses) = (&mut self.shapes[..contacts * modes], &mut self.senses[..contacts * modes]);
+        let (forces, receptance) = (&mut self.forces[..modes], &mut self.receptance[..contacts * modes]);
+        let (loaded, offset) = (&mut self.loaded[..modes], &mut self.offset[..contacts]);
+        let elements = &self.elements.contacts[..contacts];
+        for (force, resisting) in forces.iter_mut().zip(&self.resisting[..modes]) {
+            *force = -*resisting;
         }
-        self.loaded.copy_from_slice(&self.free);
-        let receptances = self.receptance.chunks_exact_mut(modes.max(1));
-        for ((shapes, receptance), contact) in
-            self.shapes.chunks_exact(modes.max(1)).zip(receptances).zip(&self.elements.contacts)
-        {
-            self.modal.apply(shapes, receptance);
-            for (loaded, r) in self.loaded.iter_mut().zip(receptance.iter()) {
-                *loaded = *loaded + *r * contact.static_load;
+        for (k, contact) in elements.iter().enumerate() {
+            let own = &mut shapes[k * modes..][..modes];
+            geometry.shapes(k, own);
+            self.modal.apply(form.classical, own, &mut receptance[k * modes..][..modes]);
+            for (force, shape) in forces.iter_mut().zip(own.iter()) {
+                *force = *force + *shape * contact.static_load;
             }
         }
-        // The bridge below the contacts.
-        for (k, contact) in self.elements.contacts.iter().enumerate().filter(|(_, contact)| !contact.constant) {
+        let accelerations = &mut self.accelerations[..modes];
+        self.modal.apply(form.classical, forces, accelerations);
+        for ((loaded, predicted), a) in loaded.iter_mut().zip(&self.predicted[..modes]).zip(accelerations.iter()) {
+            *loaded = self.newmark.correct(*predicted, *a);
+        }
+        for (k, contact) in elements.iter().enumerate().filter(|(_, contact)| !contact.constant) {
             let weights = contact.weights;
-            let shapes = &self.shapes[k * modes..(k + 1) * modes];
-            let senses = &mut self.senses[k * modes..(k + 1) * modes];
+            let own = &shapes[k * modes..][..modes];
+            let senses = &mut senses[k * modes..][..modes];
             let road = geometry.surface(k);
-            let mut offset = weights.value * road.elevation;
-            if weights.plain {
-                for ((sense, shape), predicted) in senses.iter_mut().zip(shapes).zip(&self.predicted) {
+            if form.plain || weights.plain {
+                let mut sum = road.elevation;
+                for ((sense, shape), q) in senses.iter_mut().zip(own).zip(loaded.iter()) {
                     *sense = beta_h2 * *shape;
-                    offset = offset - *shape * predicted.x;
+                    sum = sum - *shape * q.x;
                 }
-            } else {
-                let Coordinate { v, a, .. } = geometry.motion(k);
-                let v2 = v * v;
-                offset = offset
-                    + weights.rate * v * road.slope
-                    + weights.acceleration * (v2 * road.curvature + a * road.slope);
-                for (m, ((sense, &shape), q)) in senses.iter_mut().zip(shapes).zip(&self.predicted).enumerate() {
-                    let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
-                    let convected = v2 * curvature + a * slope;
-                    *sense = weights.value * (beta_h2 * shape)
-                        + weights.rate * (half_h * shape + beta_h2 * v * slope)
-                        + weights.acceleration * (shape + h * v * slope + beta_h2 * convected);
-                    let value = shape * q.x;
-                    let rate = shape * q.v + v * slope * q.x;
-                    let acceleration = L::splat(2.0) * v * slope * q.v + convected * q.x;
-                    offset =
-                        offset - (weights.value * value + weights.rate * rate + weights.acceleration * acceleration);
-                }
+                offset[k] = sum;
+                continue;
             }
-            self.offset[k] = offset - dot(senses, &self.loaded);
-            let row = &mut self.compliance[k * n..(k + 1) * n];
-            row.fill(L::splat(0.0));
-            for (receptance, compliance) in self.receptance.chunks_exact(modes.max(1)).zip(row.iter_mut()) {
-                *compliance = dot(senses, receptance);
+            let Coordinate { v, a, .. } = geometry.motion(k);
+            let v2 = v * v;
+            let mut sum = weights.value * road.elevation
+                + weights.rate * v * road.slope
+                + weights.acceleration * (v2 * road.curvature + a * road.slope);
+            for (m, ((sense, &shape), q)) in senses.iter_mut().zip(own).zip(loaded.iter()).enumerate() {
+                let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
+                let convected = v2 * curvature + a * slope;
+                *sense = weights.value * (beta_h2 * shape)
+                    + weights.rate * (half_h * shape + beta_h2 * v * slope)
+                    + weights.acceleration * (shape + h * v * slope + beta_h2 * convected);
+                let value = shape * q.x;
+                let rate = shape * q.v + v * slope * q.x;
+                let acceleration = shape * q.a + L::splat(2.0) * v * slope * q.v + convected * q.x;
+                sum = sum - (weights.value * value + weights.rate * rate + weights.acceleration * acceleration);
+            }
+            offset[k] = sum;
+        }
+    }
+
+    /// What the increments of the forces take off what the elements follow.
+    #[inline(always)]
+    fn couple(&mut self, form: Form) {
+        let (Form { modes, contacts, .. }, n) = (form, form.elements());
+        let (above, compliance) = (&self.above[..n * n], &mut self.compliance[..n * n]);
+        let (senses, receptance) = (&self.senses[..contacts * modes], &self.receptance[..contacts * modes]);
+        for k in 0..n {
+            for j in 0..n {
+                let mut sum = above[k * n + j];
+                if k < contacts && j < contacts {
+                    for (sense, r) in senses[k * modes..][..modes].iter().zip(&receptance[j * modes..][..modes]) {
+                        sum = sum + *sense * *r;
+                    }
+                }
+                compliance[k * n + j] = sum;
             }
         }
-        // The vehicles above them, and what rubs between their parts.
-        for unit in &self.units {
-            // A vehicle without coordinates adds nothing.
-            let elements = if unit.rig.size == 0 { 0 } else { unit.rig.elements };
-            for own in 0..elements {
-                let k = unit.element(own);
-                let [value, rate] = unit.rig.shortening(&self.newmark, own);
-                let factor = match self.elements.contacts.get(k) {
-                    Some(contact) => {
-                        let weights = contact.weights;
-                        self.offset[k] = self.offset[k] + weights.value * value + weights.rate * rate;
-                        weights.value * beta_h2 + weights.rate * half_h
+    }
+
+    /// The vehicles above the contacts, and what rubs between their parts: what the elements follow without the
+    /// increments of the forces.
+    #[inline(always)]
+    fn sit(&mut self, form: Form) {
+        let offset = &mut self.offset[..form.elements()];
+        offset[form.contacts..].fill(L::splat(0.0));
+        for unit in &self.units[..form.vehicles] {
+            let [contacts, rubbing, coordinates] = form.part(unit);
+            let size = coordinates.len();
+            for (own, k) in contacts.chain(rubbing).enumerate() {
+                let unloaded = unit.rig.unloaded(own, size, form.passive);
+                let mut sum = offset[k];
+                if form.plain || k >= form.contacts {
+                    for (row, q) in unloaded {
+                        sum = sum + *row * q.x;
                     }
-                    None => {
-                        self.offset[k] = value;
-                        beta_h2
+                } else {
+                    let weights = self.elements.contacts[k].weights;
+                    for (row, q) in unloaded {
+                        sum = sum + *row * (weights.value * q.x + weights.rate * q.v);
                     }
-                };
-                for (other, coupling) in unit.rig.coupling(own).iter().enumerate() {
-                    let at = k * n + unit.element(other);
-                    let of_bridge = other < unit.contacts.len() && own < unit.contacts.len();
-                    let before = if of_bridge { self.compliance[at] } else { L::splat(0.0) };
-                    self.compliance[at] = before + factor * *coupling;
                 }
+                offset[k] = sum;
             }
         }
     }
 
     #[inline(always)]
-    fn move_bridge(&mut self, state: &mut State<L>) {
-        let modes = self.omega2.len();
-        self.forces.copy_from_slice(&self.loaded);
-        for (receptance, increment) in self.receptance.chunks_exact(modes.max(1)).zip(&state.increments) {
-            for (a, r) in self.forces.iter_mut().zip(receptance) {
-                *a = *a + *r * *increment;
+    fn move_bridge(&mut self, form: Form, state: &mut State<L>) {
+        let Form { modes, contacts, .. } = form;
+        let receptance = &self.receptance[..contacts * modes];
+        let increments = &state.increments[..contacts];
+        for (m, mode) in state.modes[..modes].iter_mut().enumerate() {
+            let mut a = self.loaded[..modes][m].a;
+            for (k, increment) in increments.iter().enumerate() {
+                a = a + receptance[k * modes + m] * *increment;
             }
-        }
-        for ((mode, predicted), a) in state.modes.iter_mut().zip(&self.predicted).zip(&self.forces) {
-            *mode = self.newmark.correct(*predicted, *a);
+            *mode = self.newmark.correct(self.predicted[..modes][m], a);
         }
     }
 }

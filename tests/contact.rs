@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use spanwise::assembly::Friction;
 use spanwise::assembly::{ContactLaw, ContactPoint};
-use spanwise::contact::{Contact, Elements};
+use spanwise::contact::{Contact, Elements, Prepared};
 use spanwise::friction::Stroke;
 use spanwise::vehicle::Axle;
 
@@ -84,9 +84,10 @@ fn contact(axle: &Axle, static_load: f64) -> Contact<f64> {
 }
 
 fn solve(wheels: &[Wheel], u: &[f64], s: &[f64], p: &mut [f64], frozen: bool) -> bool {
-    let elements = Elements { contacts: wheels.iter().map(Wheel::contact).collect(), rubbing: Vec::new() };
+    let elements = Elements::new(wheels.iter().map(Wheel::contact).collect(), Vec::new());
     let strokes: Vec<Stroke<f64>> = wheels.iter().map(Wheel::stroke).collect();
-    elements.solve(u, s, &strokes, &mut Vec::new(), p, frozen)
+    let mut prepared = vec![Prepared::nothing(); wheels.len()];
+    elements.solve(elements.counts(), u, s, &strokes, &mut prepared, p, frozen)
 }
 
 /// Root of a rising function.
@@ -193,7 +194,7 @@ proptest! {
         prop_assert!((p - exact).abs() <= BISECTED * wheel.static_load, "{p} N, by bisection {exact} N");
 
         // The suspension it leaves behind: on the road it went where the law says, in the air it has let go.
-        let Stroke { shortening: s, friction, .. } = wheel.contact().settle(p, &wheel.stroke());
+        let Stroke { shortening: s, friction, .. } = wheel.contact().settle(p, &prepared, &wheel.stroke());
         let limit = wheel.axle.friction.limit;
         prop_assert!(friction.abs() <= limit);
         let carried = wheel.axle.suspension_stiffness * s + friction - wheel.axle.friction.initial;

@@ -82,6 +82,11 @@ impl<L: Lane> Geometry<L> for Shared<'_, L> {
     }
 
     #[inline(always)]
+    fn steady(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn motion(&self, contact: usize) -> Coordinate<L> {
         Coordinate { x: L::splat(self.table.path.x(self.step, contact)), v: self.speed, a: L::splat(0.0) }
     }

@@ -23,7 +23,7 @@ macro_rules! operator {
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for i in 0..N {
-                    self.0[i] = self.0[i] $op other.0[i];
+                    self.0[i] $op other.0[i];
                 }
                 self
             }
@@ -31,10 +31,10 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
-operator!(Div, div, /);
+operator!(Add, add, +=);
+operator!(Sub, sub, -=);
+operator!(Mul, mul, *=);
+operator!(Div, div, /=);
 
 impl<const N: usize> Neg for Wide<N> {
     type Output = Self;
@@ -100,11 +100,11 @@ impl<const N: usize> Lane for Wide<N> {
 
     #[inline(always)]
     fn less(self, other: Self) -> Samples<N> {
-        let mut mask = [0; N];
+        let mut mask = Samples([0; N]);
         for i in 0..N {
-            mask[i] = if self.0[i] < other.0[i] { u64::MAX } else { 0 };
+            mask.0[i] = if self.0[i] < other.0[i] { u64::MAX } else { 0 };
         }
-        Samples(mask)
+        mask
     }
 
     #[inline(always)]
@@ -133,6 +133,31 @@ impl<const N: usize> Lane for Wide<N> {
             any |= mask.0[i];
         }
         any != 0
+    }
+
+    // As one choice for each sample, which is one instruction for several of them.
+    #[inline(always)]
+    fn larger(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] = if other.0[i] < self.0[i] { self.0[i] } else { other.0[i] };
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn smaller(mut self, other: Self) -> Self {
+        for i in 0..N {
+            self.0[i] = if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn magnitude(mut self) -> Self {
+        for i in 0..N {
+            self.0[i] = self.0[i].abs();
+        }
+        self
     }
 
     #[inline(always)]
