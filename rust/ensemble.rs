@@ -27,6 +27,7 @@ use crate::course::{Course, Drive, Passage};
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
 use crate::influence::Quantity;
+use crate::lane::wide::Wide;
 use crate::path::Pavement;
 use crate::road::random::Synthesis;
 use crate::settings::Settings;
@@ -35,11 +36,11 @@ use crate::vehicle::Vehicle;
 use look::Look;
 use record::{Failure, Layout, Record, Results};
 use sample::{Parameter, Samples};
-use simd::Isa;
+use simd::{Isa, SAMPLES};
 use table::{Advance, Ground, Table};
 
-/// Samples that a worker takes at a time unless told otherwise.
-pub const BLOCK: usize = 32;
+/// Most samples that a worker takes at a time unless told otherwise.
+pub const BLOCK: usize = 256;
 
 /// Halvings of the step that a sample may ask for.
 const MOST_HALVINGS: u32 = 16;
@@ -81,7 +82,7 @@ pub struct Workers {
     pub isa: Isa,
     /// Threads.
     pub threads: usize,
-    /// Samples that a worker takes at a time.
+    /// Samples that a worker takes at a time; fewer, down to what fills its lanes, where there is not much to share out.
     pub chunk: usize,
 }
 
@@ -342,7 +343,9 @@ impl Study {
             failures: Vec::new(),
         };
         let failures = Mutex::new(Vec::new());
-        let portions = portions(&distinct, &mut results, workers.chunk);
+        // A few portions for every thread, in whole groups of lanes.
+        let share = count.div_ceil(4 * workers.threads).next_multiple_of(SAMPLES).max(SAMPLES);
+        let portions = portions(&distinct, &mut results, workers.chunk.min(share));
         let go_on = || !progress.stop.load(Ordering::Relaxed);
         let work = || {
             portions.into_par_iter().try_for_each(|portion| {
@@ -350,10 +353,9 @@ impl Study {
                 let mut failed = Vec::new();
                 let (kind, _) = marches[march];
                 if self.shares {
-                    let task = together::Task { study: self, layout, samples, kind, table: &tables[march] };
-                    for (members, records) in members.chunks(BLOCK).zip(records.chunks_mut(BLOCK)) {
-                        task.run(workers.isa, members, records, &mut failed, &go_on)?;
-                    }
+                    let task =
+                        together::Task { study: self, layout, samples, kind, table: &tables[march], isa: workers.isa };
+                    task.run::<Wide<SAMPLES>>(members, &mut records, &mut failed, &go_on)?;
                 } else {
                     for (&member, record) in members.iter().zip(&mut records) {
                         let sample = member as usize;

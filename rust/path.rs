@@ -141,8 +141,8 @@ impl Share {
             Share::Level => Surface { elevation: zero, slope: zero, curvature: zero },
             Share::Whole => Surface { elevation, slope, curvature },
             Share::Beyond => Surface { elevation, slope: zero, curvature: zero },
-            Share::Faded(fade) => {
-                let [fade, fade_1, fade_2] = fade.map(L::splat);
+            Share::Faded([fade, fade_1, fade_2]) => {
+                let (fade, fade_1, fade_2) = (L::splat(fade), L::splat(fade_1), L::splat(fade_2));
                 Surface {
                     elevation: fade * elevation,
                     slope: fade * slope + fade_1 * elevation,

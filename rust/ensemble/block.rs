@@ -1,12 +1,16 @@
 //! One block of samples through one crossing, group beside group of lanes: the step of a single crossing, chunk by chunk,
 //! and after each chunk the extremes of every response in it.
 
+use std::ops::Range;
+
 use super::look::Look;
+use super::simd::{Isa, Work, dispatch};
 use super::table::{Below, CHUNK, Chunk, Table};
 use super::watch::{Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
 use crate::recovery::Rows;
+use crate::road::random::Synthesis;
 use crate::road::spline::weighted;
 use crate::step::{Geometry, State, Stepper, Surface, Unsettled};
 
@@ -15,7 +19,7 @@ use crate::step::{Geometry, State, Stepper, Surface, Unsettled};
 pub struct Shared<'a, L> {
     table: &'a Table,
     /// Coefficients of the samples' own roads.
-    road: Vec<L>,
+    road: &'a [L],
     speed: L,
     /// The step, and where the table has it.
     step: usize,
@@ -26,7 +30,7 @@ pub struct Shared<'a, L> {
 impl<'a, L: Lane> Shared<'a, L> {
     /// At the start.
     #[inline(always)]
-    pub fn new(table: &'a Table, road: Vec<L>, speed: L) -> Self {
+    pub fn new(table: &'a Table, road: &'a [L], speed: L) -> Self {
         let zero = L::splat(0.0);
         let level = Surface { elevation: zero, slope: zero, curvature: zero };
         let mut shared = Shared { table, road, speed, step: 0, row: 0, surfaces: vec![level; table.axles()] };
@@ -135,25 +139,28 @@ pub struct Ends<L> {
     pub latest: usize,
 }
 
-/// Samples side by side.
+/// The steppers of a group.
 #[derive(Debug, Clone)]
-pub struct Group<'a, L> {
-    /// Where they are.
-    pub geometry: Shared<'a, L>,
+pub struct Steppers<L> {
     /// Finds the state at the start, for the modes that this has.
     pub starter: Stepper<L>,
     /// Steps without a bridge, as long as no axle has come on to it.
     pub approach: Stepper<L>,
     /// Steps on the bridge.
-    pub stepper: Stepper<L>,
+    pub bridge: Stepper<L>,
+}
+
+/// Samples side by side.
+#[derive(Debug, Clone)]
+pub struct Group<'a, L> {
+    /// Where they are.
+    pub geometry: Shared<'a, L>,
     /// Their bridges, if these differ.
     pub bridge: Option<Bridge<L>>,
     /// When they end.
     pub ends: Ends<L>,
     /// Vertical displacements of the bodies, as rows over the coordinates of the vehicle.
     pub bodies: &'a [Vec<f64>],
-    /// What is seen of them.
-    pub seen: Seen<L>,
 }
 
 /// What has been seen of a group.
@@ -197,22 +204,56 @@ pub struct Way<'a> {
     pub rows: &'a Rows,
     /// The responses looked at.
     pub look: &'a Look,
-    /// Whether to look for trouble after every step and not only after every chunk.
+    /// Whether to look for trouble after every step and not only after every stretch.
     pub closely: bool,
+    /// The instruction set of the loops.
+    pub isa: Isa,
+}
+
+impl Way<'_> {
+    /// What a step leaves for recovery.
+    fn widths(&self, bodies: usize) -> Widths {
+        let felt = self.rows.weight() == 1.0;
+        Widths { coordinates: self.rows.width(), axles: self.table.axles(), bodies, felt }
+    }
 }
 
 /// Most numbers that a group keeps of a stretch of steps: what is kept stays in the processor's caches.
 const KEPT: usize = 1 << 15;
+
+/// What a worker needs again for each group, so that memory is asked for once.
+#[derive(Debug, Clone)]
+pub struct Scratch<L> {
+    /// What recovery needs, by step: of the steps of a stretch, and of the one before.
+    kept: Vec<L>,
+    /// One in the lanes that have not ended yet, by step of a stretch of the tail.
+    active: Vec<L>,
+    glanced: Vec<[L; 2]>,
+    between: Vec<L>,
+    chunks: Vec<Chunk>,
+}
+
+impl<L: Lane> Scratch<L> {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        let (kept, active, glanced) = (Vec::new(), Vec::new(), Vec::new());
+        Scratch { kept, active, glanced, between: Vec::new(), chunks: Vec::new() }
+    }
+}
+
+impl<L: Lane> Default for Scratch<L> {
+    fn default() -> Self {
+        Scratch::new()
+    }
+}
 
 /// One group on its way.
 struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
     static_loads: Vec<L>,
-    /// What recovery needs, by step: of the steps of a stretch, and of the one before.
-    kept: Vec<L>,
-    /// One in the lanes that have not ended yet, by step of a stretch of the tail.
-    active: Vec<L>,
+    kept: &'g mut Vec<L>,
+    active: &'g mut Vec<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
@@ -236,9 +277,10 @@ impl<L: Lane> Traveller<'_, '_, L> {
             }
         }
         for k in 0..axles {
-            let load = self.static_loads[k] + self.state.increments[k];
-            kept[coordinates + k] = if felt { load } else { zero };
-            kept[coordinates + axles + k] = load;
+            if !felt {
+                kept[coordinates + k] = zero;
+            }
+            kept[widths.loads() + k] = self.static_loads[k] + self.state.increments[k];
         }
         for (b, row) in self.group.bodies.iter().enumerate() {
             let mut sum = zero;
@@ -298,32 +340,123 @@ enum Where {
     Tail,
 }
 
-/// Marches groups of samples through the table.
-#[inline(always)]
-pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn() -> bool) -> Result<(), Trouble> {
-    let Way { table, rows, look, closely } = *way;
+/// A stretch of steps being taken.
+struct Stepping<'s, 'g, 'a, L> {
+    traveller: &'s mut Traveller<'g, 'a, L>,
+    steppers: &'s mut Steppers<L>,
+    way: &'s Way<'s>,
+    widths: Widths,
+    place: Where,
+    steps: Range<usize>,
+    go_on: &'s dyn Fn() -> bool,
+}
+
+impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
+    type Output = Result<(), Trouble>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Stepping { traveller, steppers, way, widths, place, steps, go_on } = self;
+        let rates = way.rows.by_rates();
+        let from = steps.start;
+        for step in steps {
+            if step > 0 {
+                let (state, geometry) = (&mut traveller.state, &mut traveller.group.geometry);
+                let advanced = match place {
+                    Where::Approach => steppers.approach.advance(state, geometry),
+                    _ => steppers.bridge.advance(state, geometry),
+                };
+                if let Err(e) = advanced {
+                    return Err(Trouble::Failed(step, Some(e)));
+                }
+            }
+            let row = step - from + 1;
+            traveller.keep(row, &widths, rates, place != Where::Approach);
+            if place == Where::Tail {
+                traveller.end(row, step, &widths);
+            }
+            if way.closely && !traveller.sound(step) {
+                return Err(Trouble::Failed(step, None));
+            }
+            if (step - from) % CHUNK == CHUNK - 1 && !go_on() {
+                return Err(Trouble::Interrupted);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The same stretch being looked at.
+struct Looking<'s, L> {
+    seen: &'s mut Seen<L>,
+    way: &'s Way<'s>,
+    static_loads: &'s [L],
+    /// Rows of its steps, and of the one before.
+    kept: &'s [L],
+    active: Option<&'s [L]>,
+    widths: Widths,
+    place: Where,
+    from: usize,
+    chunks: &'s [Chunk],
+    /// The next stop.
+    stop: &'s mut usize,
+    glanced: &'s mut Vec<[L; 2]>,
+    between: &'s mut Vec<L>,
+}
+
+impl<L: Lane> Work for Looking<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Looking { seen, way, kept, widths, place, from, chunks, stop, .. } = self;
+        let (rows, width) = (&way.look.rows, widths.all());
+        let steps = &kept[width..];
+        seen.ride.take(steps, &widths, self.static_loads, from, self.active, place == Where::Bridge);
+        match place {
+            Where::Approach => {}
+            Where::Tail => watch_free(&mut seen.steps, rows, steps, &widths, from),
+            Where::Bridge => {
+                Survey { rows, chunks, steps, widths, from }.take(&mut seen.steps, self.glanced);
+                let jumps = if way.rows.by_rates() { widths.coordinates / 2 } else { widths.coordinates };
+                let to = from + steps.len() / width;
+                while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < to) {
+                    let row = next.step - from;
+                    let sides = [&kept[row * width..][..width], &kept[(row + 1) * width..][..width]];
+                    watch_stop(&mut seen.stops, rows, next, *stop, sides, &widths, jumps, self.between);
+                    *stop += 1;
+                }
+            }
+        }
+    }
+}
+
+/// Marches a group of samples through the table.
+pub fn march<L: Lane>(
+    way: &Way<'_>,
+    group: &mut Group<'_, L>,
+    steppers: &mut Steppers<L>,
+    scratch: &mut Scratch<L>,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Seen<L>, Trouble> {
+    let Way { table, rows, look, isa, .. } = *way;
     let steps = table.path.steps;
-    let bodies = groups.first().map_or(0, |group| group.bodies.len());
-    let widths =
-        Widths { coordinates: rows.width(), axles: table.axles(), bodies, felt: rows.weight() == 1.0 };
-    let rates = rows.by_rates();
+    let bodies = group.bodies.len();
+    let widths = way.widths(bodies);
     let width = widths.all();
     // Whole chunks, so that each begins a stretch.
     let longest = (KEPT / width / CHUNK).max(1) * CHUNK;
-    let latest = groups.iter().map(|group| group.ends.latest).max().unwrap_or(steps);
-    let mut travellers: Vec<Traveller<'_, '_, L>> = Vec::with_capacity(groups.len());
-    for group in groups {
-        let speed = group.geometry.speed;
-        let state = group.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
-        let static_loads = group.stepper.static_loads();
-        let rows = longest.min(latest + 1) + 1;
-        let kept = vec![L::splat(0.0); rows * width];
-        let mut traveller = Traveller { group, state, static_loads, kept, active: Vec::new() };
-        // Before the first step there is nothing: it stands for the one before.
-        traveller.keep(0, &widths, rates, table.first == 0);
-        travellers.push(traveller);
-    }
-    let (mut scratch, mut glanced, mut between) = (Vec::new(), Vec::new(), Vec::new());
+    let latest = group.ends.latest;
+    let room = (longest.min(steps + 1 - table.first).max(CHUNK) + 1) * width;
+    let Scratch { kept, active, glanced, between, chunks: own_chunks } = scratch;
+    kept.resize(room.max(kept.len()), L::splat(0.0));
+    let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
+    let speed = group.geometry.speed;
+    let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
+    let static_loads = steppers.bridge.static_loads();
+    let mut traveller = Traveller { group, state, static_loads, kept, active };
+    // Before the first step there is nothing: it stands for the one before.
+    traveller.keep(0, &widths, rows.by_rates(), table.first == 0);
     let mut stop = 0;
     let mut from = 0;
     while from <= latest {
@@ -335,80 +468,59 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
             (Where::Tail, latest + 1, CHUNK)
         };
         let to = end.min(from + most);
-        for traveller in &mut travellers {
-            traveller.active.clear();
-            if place != Where::Approach && traveller.state.modes.is_empty() {
-                traveller.state.modes = vec![Coordinate::rest(); table.modes];
-            }
-        }
-        for step in from..to {
-            for traveller in &mut travellers {
-                if step > 0 {
-                    let Group { geometry, approach, stepper, .. } = &mut *traveller.group;
-                    let advanced = match place {
-                        Where::Approach => approach.advance(&mut traveller.state, geometry),
-                        _ => stepper.advance(&mut traveller.state, geometry),
-                    };
-                    if let Err(e) = advanced {
-                        return Err(Trouble::Failed(step, Some(e)));
-                    }
-                }
-                let row = step - from + 1;
-                traveller.keep(row, &widths, rates, place != Where::Approach);
-                if place == Where::Tail {
-                    traveller.end(row, step, &widths);
-                }
-                if closely && !traveller.sound(step) {
-                    return Err(Trouble::Failed(step, None));
-                }
-            }
-            if (step - from) % CHUNK == CHUNK - 1 && !go_on() {
-                return Err(Trouble::Interrupted);
-            }
-        }
-        let chunks = if place == Where::Bridge { table.chunks(from, to, rows, look, &mut scratch) } else { Vec::new() };
-        let influence: Vec<&[f64]> = chunks.iter().map(|chunk| &chunk.influence[..]).collect();
-        let bounds: Vec<&[[f64; 2]]> = chunks.iter().map(|chunk| &chunk.bounds[..]).collect();
-        let stops_to = stop + table.stops[stop..].partition_point(|stop| stop.step < to);
         let count = to - from;
-        for traveller in &mut travellers {
-            if !traveller.sound(to - 1) {
-                return Err(Trouble::Failed(to - 1, None));
-            }
-            let seen = &mut traveller.group.seen;
-            let kept = &traveller.kept[width..(count + 1) * width];
-            let active = (place == Where::Tail).then_some(&traveller.active[..]);
-            seen.ride.take(kept, &widths, &traveller.static_loads, from, active, place == Where::Bridge);
-            match place {
-                Where::Approach => {}
-                Where::Tail => watch_free(&mut seen.steps, &look.rows, kept, &widths, from),
-                Where::Bridge => {
-                    let survey = Survey {
-                        rows: &look.rows,
-                        influence: &influence,
-                        bounds: &bounds,
-                        steps: kept,
-                        widths,
-                        from,
-                    };
-                    survey.take(&mut seen.steps, &mut glanced);
-                    let jumps = if rates { widths.coordinates / 2 } else { widths.coordinates };
-                    for (number, stop) in table.stops[..stops_to].iter().enumerate().skip(stop) {
-                        let row = stop.step - from;
-                        let sides = [&traveller.kept[row * width..][..width], &traveller.kept[(row + 1) * width..][..width]];
-                        watch_stop(&mut seen.stops, &look.rows, stop, number, sides, &widths, jumps, &mut between);
-                    }
-                }
-            }
-            traveller.kept.copy_within(count * width..(count + 1) * width, 0);
+        traveller.active.clear();
+        if place != Where::Approach && traveller.state.modes.is_empty() {
+            traveller.state.modes = vec![Coordinate::rest(); table.modes];
         }
-        stop = stops_to;
-        if !go_on() {
-            return Err(Trouble::Interrupted);
+        let steppers = &mut *steppers;
+        let stepping = Stepping { traveller: &mut traveller, steppers, way, widths, place, steps: from..to, go_on };
+        dispatch(isa, stepping)?;
+        if !traveller.sound(to - 1) {
+            return Err(Trouble::Failed(to - 1, None));
         }
+        let chunks =
+            if place == Where::Bridge { table.chunks(from, to, rows, look, own_chunks) } else { Default::default() };
+        let looking = Looking {
+            seen: &mut seen,
+            way,
+            static_loads: &traveller.static_loads,
+            kept: &traveller.kept[..(count + 1) * width],
+            active: (place == Where::Tail).then_some(&traveller.active[..]),
+            widths,
+            place,
+            from,
+            chunks,
+            stop: &mut stop,
+            glanced,
+            between,
+        };
+        dispatch(isa, looking);
+        traveller.kept.copy_within(count * width..(count + 1) * width, 0);
         from = to;
     }
-    Ok(())
+    Ok(seen)
+}
+
+/// The roads of a group being drawn.
+pub struct Drawing<'s, L, F> {
+    /// What they have in common.
+    pub synthesis: &'s Synthesis,
+    /// Seed of the study.
+    pub seed: u64,
+    /// Number of the sample in each lane.
+    pub sample: F,
+    /// Where their coefficients go.
+    pub road: &'s mut Vec<L>,
+}
+
+impl<L: Lane, F: Fn(usize) -> u64> Work for Drawing<'_, L, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.synthesis.coefficients_into(self.seed, self.sample, self.road);
+    }
 }
 
 /// Ā_st under loads, from what loads of one at each axle make of it.
@@ -420,39 +532,45 @@ fn combine<L: Lane>(of_one: &[f64], loads: &[L], width: usize, out: &mut Vec<L>)
     }
 }
 
-/// The static extremes under loads that differ from sample to sample.
-#[inline(always)]
-pub fn rest<L: Lane>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
-    let Way { table, rows, look, .. } = *way;
-    let (width, axles) = (rows.width(), table.axles());
-    let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-    let widths = Widths { coordinates: width, axles, bodies: 0, felt: true };
-    let (mut scratch, mut glanced): (Vec<Chunk>, Vec<[L; 2]>) = (Vec::new(), Vec::new());
-    let mut steps = Vec::with_capacity(CHUNK * widths.all());
-    for from in (table.first..=table.path.steps).step_by(CHUNK) {
-        let to = (from + CHUNK).min(table.path.steps + 1);
-        steps.clear();
-        for step in from..to {
-            combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, width, &mut steps);
-            steps.extend_from_slice(loads);
-            steps.extend_from_slice(loads);
+/// Static loads going over the bridge.
+struct Resting<'s, L> {
+    way: &'s Way<'s>,
+    loads: &'s [L],
+}
+
+impl<L: Lane> Work for Resting<'_, L> {
+    type Output = Seen<L>;
+
+    #[inline(always)]
+    fn run(self) -> Seen<L> {
+        let Resting { way, loads } = self;
+        let Way { table, rows, look, .. } = *way;
+        let widths = Widths { felt: true, ..way.widths(0) };
+        let (width, axles) = (widths.coordinates, widths.axles);
+        let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
+        let (mut own_chunks, mut glanced) = (Vec::new(), Vec::new());
+        let mut steps = Vec::with_capacity(CHUNK * widths.all());
+        for from in (table.first..=table.path.steps).step_by(CHUNK) {
+            let to = (from + CHUNK).min(table.path.steps + 1);
+            steps.clear();
+            for step in from..to {
+                combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, width, &mut steps);
+                steps.extend_from_slice(loads);
+            }
+            let chunks = table.chunks(from, to, rows, look, &mut own_chunks);
+            Survey { rows: &look.rows, chunks, steps: &steps, widths, from }.take(&mut seen.steps, &mut glanced);
         }
-        let chunks = table.chunks(from, to, rows, look, &mut scratch);
-        let survey = Survey {
-            rows: &look.rows,
-            influence: &[&chunks[0].influence],
-            bounds: &[&chunks[0].bounds],
-            steps: &steps,
-            widths,
-            from,
-        };
-        survey.take(&mut seen.steps, &mut glanced);
+        for (number, stop) in table.stops.iter().enumerate() {
+            let mut then = Vec::with_capacity(width + axles);
+            combine(&stop.statics, loads, width, &mut then);
+            then.extend_from_slice(loads);
+            watch_moment(&mut seen.stops, &look.rows, stop, number, &then);
+        }
+        seen
     }
-    for (number, stop) in table.stops.iter().enumerate() {
-        let mut then = Vec::with_capacity(width + axles);
-        combine(&stop.statics, loads, width, &mut then);
-        then.extend_from_slice(loads);
-        watch_moment(&mut seen.stops, &look.rows, stop, number, &then);
-    }
-    seen
+}
+
+/// The static extremes under loads that differ from sample to sample.
+pub fn rest<L: Lane>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
+    dispatch(way.isa, Resting { way, loads })
 }

@@ -1,8 +1,6 @@
 //! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
 
 use crate::error::Error;
-use crate::lane::Lane;
-use crate::lane::wide::Wide;
 
 /// Samples side by side in one group of lanes.
 pub const SAMPLES: usize = 8;
@@ -74,13 +72,13 @@ impl Isa {
     }
 }
 
-/// What is compiled once for each instruction set.
+/// A loop that is compiled once for each instruction set.
 pub trait Work {
     /// What comes of it.
     type Output;
 
-    /// Does it with samples side by side in L; must be inlined, with all that it calls in its inner loops.
-    fn run<L: Lane>(self) -> Self::Output;
+    /// Goes through it; must be inlined, with all that it calls, or the instruction set is lost.
+    fn run(self) -> Self::Output;
 }
 
 struct Compiled<W>(W);
@@ -90,7 +88,7 @@ impl<W: Work> pulp::NullaryFnOnce for Compiled<W> {
 
     #[inline(always)]
     fn call(self) -> W::Output {
-        self.0.run::<Wide<SAMPLES>>()
+        self.0.run()
     }
 }
 

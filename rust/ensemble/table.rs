@@ -205,17 +205,17 @@ impl Table {
         rows: &Rows,
         look: &Look,
         scratch: &'a mut Vec<Chunk>,
-    ) -> Vec<&'a Chunk> {
+    ) -> &'a [Chunk] {
         let count = (to - from).div_ceil(CHUNK);
         let first = (from - self.first) / CHUNK;
         if let Some(ready) = &self.ready {
-            return ready[first..first + count].iter().collect();
+            return &ready[first..first + count];
         }
         scratch.resize_with(count.max(scratch.len()), Chunk::default);
         for (i, chunk) in scratch[..count].iter_mut().enumerate() {
             self.fill(from + i * CHUNK, rows, look, chunk);
         }
-        scratch[..count].iter().collect()
+        &scratch[..count]
     }
 
     fn fill(&self, from: usize, rows: &Rows, look: &Look, chunk: &mut Chunk) {

@@ -1,18 +1,18 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
 use super::alone::{Scaled, passages};
-use super::block::{Bridge, Ends, Group, Seen, Shared, Trouble, Way, march, rest};
+use super::block::{Bridge, Drawing, Ends, Group, Scratch, Seen, Shared, Steppers, Trouble, Way, march, rest};
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
-use super::simd::{Isa, Work, dispatch};
+use super::simd::{Isa, dispatch};
 use super::table::Table;
 use super::watch::Watched;
 use super::{Kind, Study};
 use crate::error::Error;
 use crate::lane::Lane;
 use crate::modal::ModalDamping;
+use crate::settings::Settings;
 use crate::step::{Moving, Propulsion, Scheme, Stepper, Unsettled};
-use crate::vehicle::Vehicle;
 
 /// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
 pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
@@ -35,7 +35,7 @@ pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
 /// The static extremes of a kind as it is: the largest of the responses looked at, then the smallest.
 pub fn at_rest(study: &Study, kind: usize) -> Result<Vec<f64>, Error> {
     let table = study.table((kind, 0));
-    let way = Way { table: &table, rows: &study.analysis.rows, look: &study.look, closely: false };
+    let way = Way { table: &table, rows: &study.analysis.rows, look: &study.look, closely: false, isa: Isa::Scalar };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
@@ -73,6 +73,17 @@ pub struct Task<'a> {
     pub kind: usize,
     /// Its geometry.
     pub table: &'a Table,
+    /// The instruction set.
+    pub isa: Isa,
+}
+
+/// What has been seen of a group.
+struct Marched<L> {
+    seen: Seen<L>,
+    /// Of the static responses, if they differ from sample to sample.
+    at_rest: Option<Seen<L>>,
+    /// The last step of each.
+    last: L,
 }
 
 /// One sample made ready.
@@ -86,63 +97,9 @@ struct Ready {
     static_loads: Vec<f64>,
 }
 
-/// Samples to be marched, compiled once for each instruction set.
-struct March<'t, 'a, 'r> {
-    task: &'t Task<'a>,
-    members: &'t [u32],
-    records: &'t mut [&'r mut Record<'a>],
-    closely: bool,
-    go_on: &'t dyn Fn() -> bool,
-}
-
-impl Work for March<'_, '_, '_> {
-    type Output = Result<Vec<Failure>, Trouble>;
-
-    #[inline(always)]
-    fn run<L: Lane>(self) -> Self::Output {
-        self.task.block::<L>(self.members, self.records, self.closely, self.go_on)
-    }
-}
-
-impl<'a> Task<'a> {
-    /// Runs some samples side by side; those that fail are marked.
-    pub fn run(
-        &self,
-        isa: Isa,
-        members: &[u32],
-        records: &mut [Record<'a>],
-        failed: &mut Vec<Failure>,
-        go_on: &dyn Fn() -> bool,
-    ) -> Result<(), Error> {
-        let mut all: Vec<&mut Record<'a>> = records.iter_mut().collect();
-        let march = March { task: self, members, records: &mut all, closely: false, go_on };
-        match dispatch(isa, march) {
-            Ok(failures) => {
-                failed.extend(failures);
-                return Ok(());
-            }
-            Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-            Err(Trouble::Failed(..)) => {}
-        }
-        // Somebody failed: one by one they show who, and the others come to the same as side by side.
-        for (&member, record) in members.iter().zip(records) {
-            let sample = member as usize;
-            let mut own = [&mut *record];
-            let march = March { task: self, members: &[member], records: &mut own, closely: true, go_on };
-            match dispatch(isa, march) {
-                Ok(failures) => failed.extend(failures),
-                Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-                Err(Trouble::Failed(step, unsettled)) => {
-                    record.forget();
-                    failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
-                }
-            }
-        }
-        Ok(())
-    }
-
+impl Task<'_> {
     fn cause(&self, sample: usize, step: usize, unsettled: Option<Unsettled>) -> Error {
-        let time = step as f64 * self.table.path.advance / self.samples.speed(sample, 0);
+        let time = step as f64 * self.step(sample);
         let position = self.table.path.x(step.saturating_sub(1), 0);
         match unsettled {
             Some(unsettled) => Error::NoConvergence { what: unsettled.name(), time, position },
@@ -150,26 +107,9 @@ impl<'a> Task<'a> {
         }
     }
 
+    /// Time of a step of a sample [s].
     fn step(&self, sample: usize) -> f64 {
         self.table.path.advance / self.samples.speed(sample, 0)
-    }
-
-    /// Steppers of a sample: for its first instant, for the approach and for the bridge.
-    fn steppers<L: Lane>(
-        &self,
-        vehicle: &Vehicle,
-        omega: &[f64],
-        damping: &ModalDamping,
-        h: f64,
-    ) -> [Stepper<L>; 3] {
-        let moving = [Moving { assembly: vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
-        let crate::settings::Settings { beta, gravity, lift_off, .. } = self.study.settings;
-        let none = (&[][..], &ModalDamping::Classical(Vec::new()));
-        let there = (omega, damping);
-        let started = if self.table.first > 0 { none } else { there };
-        [(started, 0.0), (none, h), (there, h)].map(|((omega, damping), h)| {
-            Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })
-        })
     }
 
     fn ready(&self, sample: usize) -> Result<Ready, Error> {
@@ -177,123 +117,169 @@ impl<'a> Task<'a> {
         let vehicle = &passages[0].vehicle;
         let model = &self.study.analysis.model;
         let scaled = Scaled::of(model, self.samples, sample);
-        let (omega, damping) = scaled.as_ref().map_or((&model.omega, &model.damping), |s| (&s.omega, &s.damping));
-        let [starter, approach, stepper] = self.steppers(vehicle, omega, damping, self.step(sample));
+        let there = scaled.as_ref().map_or((&model.omega[..], &model.damping), |s| (&s.omega, &s.damping));
+        let moving = [Moving { assembly: vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
+        let Settings { beta, gravity, lift_off, .. } = self.study.settings;
+        let stepper = |(omega, damping): (&[f64], &ModalDamping), h: f64| {
+            Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })
+        };
+        let none = (&[][..], &ModalDamping::Classical(Vec::new()));
+        let h = self.step(sample);
         Ok(Ready {
-            starter,
-            approach,
-            stepper,
-            static_loads: vehicle.static_loads(self.study.settings.gravity),
+            starter: stepper(if self.table.first > 0 { none } else { there }, 0.0),
+            approach: stepper(none, h),
+            stepper: stepper(there, h),
+            static_loads: vehicle.static_loads(gravity),
             bridge: scaled.as_ref().map(|s| Bridge { coordinates: s.stiffness, rates: s.rates }),
             stiffness: scaled.map_or(1.0, |s| s.stiffness),
         })
     }
 
-    /// One block of samples in groups of lanes; the last group is filled up with its last sample.
-    #[inline(always)]
-    pub fn block<L: Lane>(
+    /// Runs some samples, one group of lanes after the other; those that fail are marked.
+    pub fn run<L: Lane>(
         &self,
         members: &[u32],
-        records: &mut [&mut Record<'a>],
-        closely: bool,
+        records: &mut [Record<'_>],
+        failed: &mut Vec<Failure>,
         go_on: &dyn Fn() -> bool,
-    ) -> Result<Vec<Failure>, Trouble> {
-        let Task { study, table, samples, .. } = *self;
-        let mut failures = Vec::new();
-        let kind: &Kind = &study.kinds[self.kind];
-        let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely };
-        let axles = table.axles();
-        let varied = !samples.factors.is_empty();
+    ) -> Result<(), Error> {
+        let (mut scratch, mut roads) = (Scratch::new(), Vec::new());
+        let alike = self.samples.alike();
+        // One for all samples, or else for those of a group.
         let mut ready: Vec<Ready> = Vec::new();
-        // Places among the members of those that are marched.
-        let mut sound: Vec<usize> = Vec::with_capacity(members.len());
-        for (place, &member) in members.iter().enumerate() {
-            if samples.alike() && !ready.is_empty() {
-                sound.push(place);
+        let mut steppers: Option<Steppers<L>> = None;
+        let groups = members.chunks(L::SAMPLES).zip(records.chunks_mut(L::SAMPLES));
+        for (members, records) in groups {
+            // Places in the group of those that are marched.
+            let mut places: Vec<usize> = (0..members.len()).collect();
+            if !alike || ready.is_empty() {
+                (ready, steppers) = (Vec::new(), None);
+                places.clear();
+                for (place, &member) in members.iter().enumerate() {
+                    if alike && !ready.is_empty() {
+                        places.push(place);
+                        continue;
+                    }
+                    match self.ready(member as usize) {
+                        Ok(one) => {
+                            ready.push(one);
+                            places.push(place);
+                        }
+                        Err(cause) => {
+                            records[place].forget();
+                            failed.push(Failure { sample: member as usize, step: None, cause });
+                        }
+                    }
+                }
+            }
+            if places.is_empty() {
                 continue;
             }
-            match self.ready(member as usize) {
-                Ok(one) => {
-                    ready.push(one);
-                    sound.push(place);
+            // The lanes: first all samples side by side; if one of them fails, each in turn in all lanes, to show which.
+            // Others come to the same as side by side.
+            let together = self.group(members, &places, &ready, false, &mut steppers, (&mut scratch, &mut roads), go_on);
+            match together {
+                Ok(group) => {
+                    for (lane, &place) in places.iter().enumerate() {
+                        self.write(&group, lane, &ready, members[place], &mut records[place], failed);
+                    }
+                    continue;
                 }
-                Err(cause) => {
-                    records[place].forget();
-                    failures.push(Failure { sample: member as usize, step: None, cause });
+                Err(Trouble::Interrupted) => return Err(Error::Interrupted),
+                Err(Trouble::Failed(..)) => {}
+            }
+            for (number, &place) in places.iter().enumerate() {
+                let own = if alike { &ready[..] } else { &ready[number..=number] };
+                let scratch = (&mut scratch, &mut roads);
+                match self.group(members, &[place], own, true, &mut None, scratch, go_on) {
+                    Ok(group) => self.write(&group, 0, own, members[place], &mut records[place], failed),
+                    Err(Trouble::Interrupted) => return Err(Error::Interrupted),
+                    Err(Trouble::Failed(step, unsettled)) => {
+                        records[place].forget();
+                        let sample = members[place] as usize;
+                        failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
+                    }
                 }
             }
         }
-        if sound.is_empty() {
-            return Ok(failures);
-        }
-        let one_for_all = samples.alike();
-        let mut groups: Vec<Group<'_, L>> = Vec::with_capacity(sound.len().div_ceil(L::SAMPLES));
-        for (number, places) in sound.chunks(L::SAMPLES).enumerate() {
-            let lane_of = |lane: usize| lane.min(places.len() - 1);
-            let sample_of = |lane: usize| members[places[lane_of(lane)]] as usize;
-            let ready_of = |lane: usize| match one_for_all {
-                true => &ready[0],
-                false => &ready[number * L::SAMPLES + lane_of(lane)],
-            };
-            let gather = |of: fn(&Ready) -> &Stepper<f64>| {
-                let each: Vec<&Stepper<f64>> = (0..L::SAMPLES).map(|lane| of(ready_of(lane))).collect();
-                Stepper::<L>::gather(&each)
-            };
-            let road: Vec<L> = match &study.own {
-                None => Vec::new(),
-                Some((synthesis, seed)) => {
-                    synthesis.coefficients(*seed, |lane| samples.first + sample_of(lane) as u64)
-                }
-            };
-            let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
-            let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
-            let ends = Ends {
-                last: L::from_fn(|lane| ended(lane).0 as f64),
-                fraction: L::from_fn(|lane| ended(lane).1),
-                latest: (0..places.len()).map(|lane| ended(lane).0).max().unwrap_or(0),
-            };
-            let bridge = ready_of(0).bridge.is_some().then(|| {
-                let of = |f: fn(Bridge<f64>) -> f64| L::from_fn(|lane| ready_of(lane).bridge.map_or(1.0, f));
-                Bridge { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
-            });
-            groups.push(Group {
-                geometry: Shared::new(table, road, speed),
-                starter: gather(|r| &r.starter),
-                approach: gather(|r| &r.approach),
-                stepper: gather(|r| &r.stepper),
-                bridge,
-                ends,
-                bodies: &kind.bodies,
-                seen: Seen::nothing(study.look.rows.len(), axles, kind.bodies.len(), table),
-            });
-        }
-        march(&way, &mut groups, go_on)?;
-        for (number, (places, group)) in sound.chunks(L::SAMPLES).zip(&groups).enumerate() {
-            let at = |lane: usize| &ready[if one_for_all { 0 } else { number * L::SAMPLES + lane.min(places.len() - 1) }];
-            let at_rest = (self.layout.own_statics && varied).then(|| {
-                let loads: Vec<L> =
-                    (0..axles).map(|k| L::from_fn(|lane| at(lane).static_loads[k])).collect();
-                rest(&way, &loads)
-            });
-            for (lane, &place) in places.iter().enumerate() {
-                let (sample, record) = (members[place] as usize, &mut *records[place]);
-                let Ready { stiffness, static_loads, .. } = at(lane);
-                self.write(&group.seen, at_rest.as_ref(), lane, sample, (*stiffness, static_loads), record);
-                if !self.is_finite(record) {
-                    record.forget();
-                    let step = group.ends.last.get(lane) as usize;
-                    failures.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, None) });
-                }
-            }
-        }
-        Ok(failures)
+        Ok(())
     }
 
-    /// Writes down what was seen of a sample.
+    /// One group of lanes, filled up with its last sample, marched to the end.
+    #[allow(clippy::too_many_arguments)] // each is one thing
+    fn group<L: Lane>(
+        &self,
+        members: &[u32],
+        places: &[usize],
+        ready: &[Ready],
+        closely: bool,
+        steppers: &mut Option<Steppers<L>>,
+        (scratch, roads): (&mut Scratch<L>, &mut Vec<L>),
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Marched<L>, Trouble> {
+        let Task { study, table, samples, .. } = *self;
+        let kind: &Kind = &study.kinds[self.kind];
+        let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely, isa: self.isa };
+        let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
+        let ready_of = |lane: usize| &ready[lane.min(ready.len() - 1)];
+        let gather = |of: fn(&Ready) -> &Stepper<f64>| {
+            let each: Vec<&Stepper<f64>> = (0..L::SAMPLES).map(|lane| of(ready_of(lane))).collect();
+            Stepper::<L>::gather(&each)
+        };
+        let steppers = steppers.get_or_insert_with(|| Steppers {
+            starter: gather(|r| &r.starter),
+            approach: gather(|r| &r.approach),
+            bridge: gather(|r| &r.stepper),
+        });
+        if let Some((synthesis, seed)) = &study.own {
+            let sample = |lane: usize| samples.first + sample_of(lane) as u64;
+            dispatch(self.isa, Drawing { synthesis, seed: *seed, sample, road: roads });
+        }
+        let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
+        let ends = Ends {
+            last: L::from_fn(|lane| ended(lane).0 as f64),
+            fraction: L::from_fn(|lane| ended(lane).1),
+            latest: (0..places.len()).map(|lane| ended(lane).0).max().unwrap_or(0),
+        };
+        let bridge = ready_of(0).bridge.is_some().then(|| {
+            let of = |f: fn(Bridge<f64>) -> f64| L::from_fn(|lane| ready_of(lane).bridge.map_or(1.0, f));
+            Bridge { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
+        });
+        let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
+        let geometry = Shared::new(table, roads, speed);
+        let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
+        let seen = march(&way, &mut group, steppers, scratch, go_on)?;
+        let at_rest = self.layout.own_statics.then(|| {
+            let of = |k: usize| L::from_fn(|lane| ready_of(lane).static_loads[k]);
+            let loads: Vec<L> = (0..table.axles()).map(of).collect();
+            rest(&way, &loads)
+        });
+        Ok(Marched { seen, at_rest, last: group.ends.last })
+    }
+
+    /// Writes down what was seen of a sample; one with a number that is not finite has failed.
     fn write<L: Lane>(
         &self,
-        seen: &Seen<L>,
-        at_rest: Option<&Seen<L>>,
+        group: &Marched<L>,
+        lane: usize,
+        ready: &[Ready],
+        member: u32,
+        record: &mut Record<'_>,
+        failed: &mut Vec<Failure>,
+    ) {
+        let sample = member as usize;
+        let Ready { stiffness, static_loads, .. } = &ready[lane.min(ready.len() - 1)];
+        self.write_numbers(group, lane, sample, (*stiffness, static_loads), record);
+        if !self.is_finite(record) {
+            record.forget();
+            let step = group.last.get(lane) as usize;
+            failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, None) });
+        }
+    }
+
+    fn write_numbers<L: Lane>(
+        &self,
+        Marched { seen, at_rest, .. }: &Marched<L>,
         lane: usize,
         sample: usize,
         (stiffness, static_loads): (f64, &[f64]),

@@ -6,7 +6,7 @@
 //! at, one by one and in order, whose bounds reach them.
 
 use super::look::Row;
-use super::table::{CHUNK, Stop};
+use super::table::{CHUNK, Chunk, Stop};
 use crate::lane::Lane;
 
 /// Largest and smallest so far, and when: the number of a step, or of a stop.
@@ -48,8 +48,8 @@ impl<L: Lane> Watched<L> {
     }
 }
 
-/// What a step leaves for recovery, in a row of numbers: coordinates, loads as the responses feel them, loads [N],
-/// vertical accelerations of the bodies [m/s²].
+/// What a step leaves for recovery, in a row of numbers: coordinates, loads [N], vertical accelerations of the bodies
+/// [m/s²]. Where responses do not feel the loads, zeros stand in their place and the loads follow.
 #[derive(Debug, Clone, Copy)]
 pub struct Widths {
     /// What the rows multiply.
@@ -66,13 +66,13 @@ impl Widths {
     /// Numbers of a step.
     #[inline(always)]
     pub fn all(&self) -> usize {
-        self.coordinates + 2 * self.axles + self.bodies
+        self.accelerations() + self.bodies
     }
 
     /// Where the loads begin.
     #[inline(always)]
     pub fn loads(&self) -> usize {
-        self.coordinates + self.axles
+        if self.felt { self.coordinates } else { self.coordinates + self.axles }
     }
 
     /// Where the accelerations begin.
@@ -185,10 +185,8 @@ fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
 pub struct Survey<'a, L> {
     /// The responses.
     pub rows: &'a [Row],
-    /// Influence of the loads, by response, step and axle, chunk by chunk of the stretch.
-    pub influence: &'a [&'a [f64]],
-    /// Least and largest influence in each chunk, by response and axle.
-    pub bounds: &'a [&'a [[f64; 2]]],
+    /// Influence of the loads, chunk by chunk of the stretch.
+    pub chunks: &'a [Chunk],
     /// Rows of the steps.
     pub steps: &'a [L],
     /// Numbers in these.
@@ -217,13 +215,13 @@ impl<L: Lane> Survey<'_, L> {
     fn of_sizes(&self, c: usize, a: usize, watched: &mut [Watched<L>], glanced: &mut Vec<[L; 2]>) {
         let width = self.widths.all();
         let felt = c + a;
-        let chunks = || self.steps.chunks(CHUNK * width).zip(self.influence).enumerate();
+        let chunks = || self.steps.chunks(CHUNK * width).zip(self.chunks).enumerate();
         // The glance.
         glanced.clear();
         for seen in watched.iter() {
             glanced.push([seen.max, seen.min]);
         }
-        for (_, (steps, influence)) in chunks() {
+        for (_, (steps, Chunk { influence, .. })) in chunks() {
             let count = steps.len() / width;
             let middle = count / 2;
             let row = &steps[middle * width..][..felt];
@@ -234,28 +232,29 @@ impl<L: Lane> Survey<'_, L> {
                 *least = value.smaller(*least);
             }
         }
-        let mut largest = [L::splat(0.0); MOST_BOUNDED];
-        let mut smallest = [L::splat(0.0); MOST_BOUNDED];
+        // Largest and smallest of every number of a step over a chunk.
+        let mut ends = [[L::splat(0.0); 2]; MOST_BOUNDED];
         let bounded = felt <= MOST_BOUNDED;
-        for (chunk, (steps, influence)) in chunks() {
+        for (chunk, (steps, Chunk { influence, bounds })) in chunks() {
             let count = steps.len() / width;
+            let mut positive = true;
             if bounded {
-                for i in 0..felt {
+                for (i, ends) in ends[..felt].iter_mut().enumerate() {
                     let (mut most, mut least) = (steps[i], steps[i]);
                     for step in 1..count {
                         let now = steps[step * width + i];
                         most = now.larger(most);
                         least = now.smaller(least);
                     }
-                    (largest[i], smallest[i]) = (most, least);
+                    *ends = [most, least];
+                    positive &= i < c || !L::any(least.less(L::splat(0.0)));
                 }
             }
             for (r, Row { factors, .. }) in self.rows.iter().enumerate() {
                 let factors = &factors[..c];
-                let mut seen = watched[r];
+                let seen = &mut watched[r];
                 if bounded {
-                    let bounds = &self.bounds[chunk][r * a..][..a];
-                    let [high, low] = reach(factors, bounds, &largest[..felt], &smallest[..felt]);
+                    let [high, low] = reach(factors, &bounds[r * a..][..a], &ends[..felt], positive);
                     let [most, least] = glanced[r];
                     let above = !(!seen.max.less(high) | high.less(most));
                     let below = !(!low.less(seen.min) | least.less(low));
@@ -263,13 +262,14 @@ impl<L: Lane> Survey<'_, L> {
                         continue;
                     }
                 }
+                let mut own = *seen;
                 let influence = &influence[r * count * a..][..count * a];
                 for step in 0..count {
                     let row = &steps[step * width..][..felt];
                     let value = value(factors, &influence[step * a..][..a], row);
-                    seen.take(value, L::splat((self.from + chunk * CHUNK + step) as f64));
+                    own.take(value, L::splat((self.from + chunk * CHUNK + step) as f64));
                 }
-                watched[r] = seen;
+                *seen = own;
             }
         }
     }
@@ -278,24 +278,32 @@ impl<L: Lane> Survey<'_, L> {
 /// Most numbers of a step whose bounds are kept.
 const MOST_BOUNDED: usize = 64;
 
-/// Bounds of a response where coordinates and loads are between their largest and smallest.
+/// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
+/// are all `positive`.
 #[inline(always)]
-fn reach<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], largest: &[L], smallest: &[L]) -> [L; 2] {
-    let term = |factor: f64, i: usize| {
-        let ends = [L::splat(factor) * largest[i], L::splat(factor) * smallest[i]];
-        if factor < 0.0 { [ends[1], ends[0]] } else { ends }
-    };
-    let [mut high, mut low] = term(factors[0], 0);
+fn reach<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
+    // A negative factor takes the other end.
+    let first = L::splat(factors[0]);
+    let turned = usize::from(factors[0] < 0.0);
+    let mut high = first * ends[0][turned];
+    let mut low = first * ends[0][1 - turned];
     for (i, &factor) in factors.iter().enumerate().skip(1) {
-        let [most, least] = term(factor, i);
-        (high, low) = (high + most, low + least);
+        let turned = usize::from(factor < 0.0);
+        high = high + L::splat(factor) * ends[i][turned];
+        low = low + L::splat(factor) * ends[i][1 - turned];
     }
-    for (k, [from, to]) in bounds.iter().enumerate() {
-        let i = factors.len() + k;
-        let (from, to) = (L::splat(*from), L::splat(*to));
-        let corners = [to * largest[i], to * smallest[i], from * largest[i], from * smallest[i]];
-        high = high + corners[0].larger(corners[1]).larger(corners[2].larger(corners[3]));
-        low = low + corners[0].smaller(corners[1]).smaller(corners[2].smaller(corners[3]));
+    for (k, &[from, to]) in bounds.iter().enumerate() {
+        let ends = &ends[factors.len() + k];
+        let (least, most) = (L::splat(from), L::splat(to));
+        if positive {
+            high = high + most * ends[usize::from(to < 0.0)];
+            low = low + least * ends[usize::from(from >= 0.0)];
+        } else {
+            let (a, b) = (most * ends[0], most * ends[1]);
+            let (c, d) = (least * ends[0], least * ends[1]);
+            high = high + a.larger(b).larger(c.larger(d));
+            low = low + a.smaller(b).smaller(c.smaller(d));
+        }
     }
     [high, low]
 }

@@ -76,6 +76,7 @@ impl Taps {
 /// Four numbers with their weights.
 #[inline(always)]
 pub fn weighted<L: Lane>(weights: [f64; 4], near: [L; 4]) -> L {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| L::splat(weights[k]) * near[k]);
-    (a + b) + (c + d)
+    let [a, b, c, d] = near;
+    let [of_a, of_b, of_c, of_d] = weights;
+    (L::splat(of_a) * a + L::splat(of_b) * b) + (L::splat(of_c) * c + L::splat(of_d) * d)
 }

@@ -84,8 +84,8 @@ pub fn one<L: Lane>(study: &Study, number: u64) -> (Vec<f64>, Vec<u32>) {
     let samples = Samples::at_speed(number, 1, SPEED);
     let (layout, table) = (study.layout(&samples), study.table((0, 0)));
     let (mut numbers, mut instants) = (vec![0.0; layout.width()], vec![0; layout.instants()]);
-    let mut record = Record { numbers: &mut numbers, instants: &mut instants };
-    let task = Task { study, layout, samples: &samples, kind: 0, table: &table };
-    task.block::<L>(&[0], &mut [&mut record], false, &|| true).unwrap();
+    let record = Record { numbers: &mut numbers, instants: &mut instants };
+    let task = Task { study, layout, samples: &samples, kind: 0, table: &table, isa: Isa::Scalar };
+    task.run::<L>(&[0], &mut [record], &mut Vec::new(), &|| true).unwrap();
     (numbers, instants)
 }
