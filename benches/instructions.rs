@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use problems::ensemble::{headline, isas, run, samples};
-use spanwise::ensemble::BLOCK;
+use spanwise::ensemble::simd::SAMPLES;
 use problems::{kishan_settings, kishan_vehicle};
 
 /// What the gate takes for: this processor cannot.
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     let Some((_, isa)) = isas().into_iter().find(|(name, _)| name == case) else {
         return ExitCode::from(ABSENT);
     };
-    let samples = samples(count * BLOCK);
+    let samples = samples(count * SAMPLES);
     black_box(run(&study, &samples, isa, 1));
     println!("{}", samples.count);
     ExitCode::SUCCESS

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::look::Look;
 use super::simd::{Isa, Work, dispatch};
 use super::table::{Below, CHUNK, Chunk, Table};
-use super::watch::{Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
+use super::watch::{Glance, Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
 use crate::recovery::Rows;
@@ -228,7 +228,7 @@ pub struct Scratch<L> {
     kept: Vec<L>,
     /// One in the lanes that have not ended yet, by step of a stretch of the tail.
     active: Vec<L>,
-    glanced: Vec<[L; 2]>,
+    glanced: Glance<L>,
     between: Vec<L>,
     chunks: Vec<Chunk>,
 }
@@ -236,7 +236,7 @@ pub struct Scratch<L> {
 impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let (kept, active, glanced) = (Vec::new(), Vec::new(), Vec::new());
+        let (kept, active, glanced) = (Vec::new(), Vec::new(), Glance::new());
         Scratch { kept, active, glanced, between: Vec::new(), chunks: Vec::new() }
     }
 }
@@ -400,7 +400,7 @@ struct Looking<'s, L> {
     chunks: &'s [Chunk],
     /// The next stop.
     stop: &'s mut usize,
-    glanced: &'s mut Vec<[L; 2]>,
+    glanced: &'s mut Glance<L>,
     between: &'s mut Vec<L>,
 }
 
@@ -548,7 +548,7 @@ impl<L: Lane> Work for Resting<'_, L> {
         let widths = Widths { felt: true, ..way.widths(0) };
         let (width, axles) = (widths.coordinates, widths.axles);
         let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-        let (mut own_chunks, mut glanced) = (Vec::new(), Vec::new());
+        let (mut own_chunks, mut glanced) = (Vec::new(), Glance::new());
         let mut steps = Vec::with_capacity(CHUNK * widths.all());
         for from in (table.first..=table.path.steps).step_by(CHUNK) {
             let to = (from + CHUNK).min(table.path.steps + 1);

@@ -180,6 +180,28 @@ fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
     value
 }
 
+/// Scratch of a [`Survey`].
+#[derive(Debug, Clone)]
+pub struct Glance<L> {
+    /// What the extremes of each response must reach.
+    glanced: Vec<[L; 2]>,
+    /// Largest and smallest of what the responses are sums of.
+    ends: Vec<[L; 2]>,
+}
+
+impl<L: Lane> Glance<L> {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Glance { glanced: Vec::new(), ends: Vec::new() }
+    }
+}
+
+impl<L: Lane> Default for Glance<L> {
+    fn default() -> Self {
+        Glance::new()
+    }
+}
+
 /// Extremes of every response over a stretch of steps with loads on the bridge.
 #[derive(Debug)]
 pub struct Survey<'a, L> {
@@ -196,15 +218,15 @@ pub struct Survey<'a, L> {
 }
 
 impl<L: Lane> Survey<'_, L> {
-    /// Looks at all of it. `glanced` is scratch.
+    /// Looks at all of it.
     #[inline(always)]
-    pub fn take(&self, watched: &mut [Watched<L>], glanced: &mut Vec<[L; 2]>) {
+    pub fn take(&self, watched: &mut [Watched<L>], scratch: &mut Glance<L>) {
         // What is known when this is compiled runs much faster: the usual numbers of modes and axles.
         macro_rules! sizes {
             ($($c:literal $a:literal),*) => {
                 match (self.widths.coordinates, self.widths.axles) {
-                    $(($c, $a) => self.of_sizes($c, $a, watched, glanced),)*
-                    (c, a) => self.of_sizes(c, a, watched, glanced),
+                    $(($c, $a) => self.of_sizes($c, $a, watched, scratch),)*
+                    (c, a) => self.of_sizes(c, a, watched, scratch),
                 }
             };
         }
@@ -212,7 +234,8 @@ impl<L: Lane> Survey<'_, L> {
     }
 
     #[inline(always)]
-    fn of_sizes(&self, c: usize, a: usize, watched: &mut [Watched<L>], glanced: &mut Vec<[L; 2]>) {
+    fn of_sizes(&self, c: usize, a: usize, watched: &mut [Watched<L>], scratch: &mut Glance<L>) {
+        let Glance { glanced, ends } = scratch;
         let width = self.widths.all();
         let felt = c + a;
         let chunks = || self.steps.chunks(CHUNK * width).zip(self.chunks).enumerate();
@@ -225,42 +248,39 @@ impl<L: Lane> Survey<'_, L> {
             let count = steps.len() / width;
             let middle = count / 2;
             let row = &steps[middle * width..][..felt];
-            for (r, (Row { factors, .. }, [most, least])) in self.rows.iter().zip(glanced.iter_mut()).enumerate() {
+            for (r, (Row { factors, .. }, glanced)) in self.rows.iter().zip(glanced.iter_mut()).enumerate() {
                 let influence = &influence[(r * count + middle) * a..][..a];
                 let value = value(&factors[..c], influence, row);
-                *most = value.larger(*most);
-                *least = value.smaller(*least);
+                let [most, least] = *glanced;
+                *glanced = [value.larger(most), value.smaller(least)];
             }
         }
-        // Largest and smallest of every number of a step over a chunk.
-        let mut ends = [[L::splat(0.0); 2]; MOST_BOUNDED];
-        let bounded = felt <= MOST_BOUNDED;
+        // Largest and smallest of every number of a step over a chunk, in memory: it is chosen between them by address.
+        ends.clear();
+        ends.resize(felt, [L::splat(0.0); 2]);
+        let ends = &mut ends[..felt];
         for (chunk, (steps, Chunk { influence, bounds })) in chunks() {
             let count = steps.len() / width;
             let mut positive = true;
-            if bounded {
-                for (i, ends) in ends[..felt].iter_mut().enumerate() {
-                    let (mut most, mut least) = (steps[i], steps[i]);
-                    for step in 1..count {
-                        let now = steps[step * width + i];
-                        most = now.larger(most);
-                        least = now.smaller(least);
-                    }
-                    *ends = [most, least];
-                    positive &= i < c || !L::any(least.less(L::splat(0.0)));
+            for (i, ends) in ends.iter_mut().enumerate() {
+                let (mut most, mut least) = (steps[i], steps[i]);
+                for step in 1..count {
+                    let now = steps[step * width + i];
+                    most = now.larger(most);
+                    least = now.smaller(least);
                 }
+                *ends = [most, least];
+                positive &= i < c || !L::any(least.less(L::splat(0.0)));
             }
             for (r, Row { factors, .. }) in self.rows.iter().enumerate() {
                 let factors = &factors[..c];
                 let seen = &mut watched[r];
-                if bounded {
-                    let [high, low] = reach(factors, &bounds[r * a..][..a], &ends[..felt], positive);
-                    let [most, least] = glanced[r];
-                    let above = !(!seen.max.less(high) | high.less(most));
-                    let below = !(!low.less(seen.min) | least.less(low));
-                    if !L::any(above | below) {
-                        continue;
-                    }
+                let [high, low] = reach(factors, &bounds[r * a..][..a], ends, positive);
+                let [most, least] = glanced[r];
+                let above = !(!seen.max.less(high) | high.less(most));
+                let below = !(!low.less(seen.min) | least.less(low));
+                if !L::any(above | below) {
+                    continue;
                 }
                 let mut own = *seen;
                 let influence = &influence[r * count * a..][..count * a];
@@ -274,9 +294,6 @@ impl<L: Lane> Survey<'_, L> {
         }
     }
 }
-
-/// Most numbers of a step whose bounds are kept.
-const MOST_BOUNDED: usize = 64;
 
 /// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
 /// are all `positive`.
