@@ -225,9 +225,9 @@ impl Study {
         let model = &self.analysis.model;
         let vehicle = self.vehicle(kind);
         let path = self.settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
-        let longest = self.advance.unwrap_or_else(|| {
-            Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest())
-        });
+        let longest = self
+            .advance
+            .unwrap_or_else(|| Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest()));
         let steps = (path / longest - 1e-9).ceil().max(1.0);
         (steps as usize, path / steps)
     }
@@ -267,9 +267,8 @@ impl Study {
         let beta = self.settings.beta;
         // Squared frequencies of bridge, vehicle and tyres on the bridge, of each kind as it is.
         let model = &self.analysis.model;
-        let fastest: Vec<[f64; 3]> = (0..self.kinds.len())
-            .map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind))))
-            .collect();
+        let fastest: Vec<[f64; 3]> =
+            (0..self.kinds.len()).map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind)))).collect();
         let plans: Vec<(usize, f64)> = (0..self.kinds.len()).map(|kind| self.plan(kind)).collect();
         let march = |sample: usize| {
             let kind = samples.kind(sample);
@@ -280,8 +279,8 @@ impl Study {
             };
             let tyres = extreme(Parameter::TyreStiffness, axles, f64::max);
             let springs = tyres.max(extreme(Parameter::SuspensionStiffness, axles, f64::max));
-            let inertia = extreme(Parameter::BodyMass, bodies, f64::min)
-                .min(extreme(Parameter::PitchInertia, bodies, f64::min));
+            let inertia =
+                extreme(Parameter::BodyMass, bodies, f64::min).min(extreme(Parameter::PitchInertia, bodies, f64::min));
             let [bridge, own, on_bridge] = fastest[kind];
             let stiffness = extreme(Parameter::BridgeStiffness, 1, f64::max);
             let fastest = (bridge * stiffness + own * springs / inertia + on_bridge * tyres).sqrt();
@@ -301,7 +300,8 @@ impl Study {
             }
             let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + self.settings.tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
-                let allowed = format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
+                let allowed =
+                    format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
                 return Err(Error::input(format!("speed[{sample}]"), format!("{speed} m/s"), allowed));
             }
             Ok((kind, halvings))

@@ -155,21 +155,14 @@ impl<'a> Task<'a> {
     }
 
     /// Steppers of a sample: for its first instant, for the approach and for the bridge.
-    fn steppers<L: Lane>(
-        &self,
-        vehicle: &Vehicle,
-        omega: &[f64],
-        damping: &ModalDamping,
-        h: f64,
-    ) -> [Stepper<L>; 3] {
+    fn steppers<L: Lane>(&self, vehicle: &Vehicle, omega: &[f64], damping: &ModalDamping, h: f64) -> [Stepper<L>; 3] {
         let moving = [Moving { assembly: vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
         let crate::settings::Settings { beta, gravity, lift_off, .. } = self.study.settings;
         let none = (&[][..], &ModalDamping::Classical(Vec::new()));
         let there = (omega, damping);
         let started = if self.table.first > 0 { none } else { there };
-        [(started, 0.0), (none, h), (there, h)].map(|((omega, damping), h)| {
-            Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })
-        })
+        [(started, 0.0), (none, h), (there, h)]
+            .map(|((omega, damping), h)| Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off }))
     }
 
     fn ready(&self, sample: usize) -> Result<Ready, Error> {
@@ -241,9 +234,7 @@ impl<'a> Task<'a> {
             };
             let road: Vec<L> = match &study.own {
                 None => Vec::new(),
-                Some((synthesis, seed)) => {
-                    synthesis.coefficients(*seed, |lane| samples.first + sample_of(lane) as u64)
-                }
+                Some((synthesis, seed)) => synthesis.coefficients(*seed, |lane| samples.first + sample_of(lane) as u64),
             };
             let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
             let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
@@ -269,10 +260,10 @@ impl<'a> Task<'a> {
         }
         march(&way, &mut groups, go_on)?;
         for (number, (places, group)) in sound.chunks(L::SAMPLES).zip(&groups).enumerate() {
-            let at = |lane: usize| &ready[if one_for_all { 0 } else { number * L::SAMPLES + lane.min(places.len() - 1) }];
+            let at =
+                |lane: usize| &ready[if one_for_all { 0 } else { number * L::SAMPLES + lane.min(places.len() - 1) }];
             let at_rest = (self.layout.own_statics && varied).then(|| {
-                let loads: Vec<L> =
-                    (0..axles).map(|k| L::from_fn(|lane| at(lane).static_loads[k])).collect();
+                let loads: Vec<L> = (0..axles).map(|k| L::from_fn(|lane| at(lane).static_loads[k])).collect();
                 rest(&way, &loads)
             });
             for (lane, &place) in places.iter().enumerate() {
