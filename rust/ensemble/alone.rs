@@ -141,7 +141,9 @@ fn ride(
     instants: &mut [u32],
 ) {
     let axles = history.axles;
-    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| (0.0..=length).contains(x));
+    // With the last axle on the end of the bridge, rounding does not decide.
+    let bridge = 0.0..=length * (1.0 + 1e-12);
+    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| bridge.contains(x));
     let first = (0..history.len()).find(|&i| on(i)).unwrap_or(0);
     let there: Vec<usize> = (first..=(first..history.len()).rev().find(|&i| on(i)).unwrap_or(first)).collect();
     let count = there.len().max(1) as f64;

@@ -126,7 +126,8 @@ impl<L: Lane> Ride<L> {
                 squares = squares + deviation * deviation;
                 // Exactly zero is what a wheel off the road carries.
                 let now = L::select(load.less(zero) | zero.less(load), one, zero);
-                aloft = aloft + *active * (one - now);
+                // The time from the instant before counts if the wheel was off then.
+                aloft = aloft + *active * (one - grounded);
                 lift_offs = lift_offs + *active * (grounded * (one - now));
                 grounded = now;
                 at = at + one;
