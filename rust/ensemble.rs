@@ -152,7 +152,7 @@ impl Study {
         }
         if shares {
             for kind in 0..study.kinds.len() {
-                study.kinds[kind].at_rest = together::at_rest(&study, kind)?;
+                study.kinds[kind].at_rest = together::at_rest(&study, kind, &study.table((kind, 0)));
             }
         } else if advance.is_some() {
             let allowed = "only for vehicles that cross alone from the left at constant speed: use step";
@@ -208,9 +208,7 @@ impl Study {
             responses: self.look.chosen.len(),
             axles: most(&|v| v.assembly().contacts.len()),
             bodies: most(&|v| v.bodies().len()),
-            own_statics: !self.shares
-                || samples.varies(Parameter::BodyMass)
-                || samples.varies(Parameter::BridgeStiffness),
+            own_statics: !self.shares || samples.varies_loads() || samples.varies(Parameter::BridgeStiffness),
             own_times: !self.shares,
         }
     }
@@ -391,7 +389,9 @@ impl Study {
             put_back(&order, &mut results);
         }
         let refinements = marches.iter().map(|(_, halvings)| *halvings).collect();
-        Ok(Run { results, tables, refinements })
+        let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
+        let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
+        Ok(Run { results, tables, refinements, at_rest })
     }
 
     /// Refuses factors on what a vehicle does not have.
@@ -431,6 +431,8 @@ pub struct Run {
     pub tables: Vec<Arc<Table>>,
     /// How often the step was halved, by march.
     pub refinements: Vec<u32>,
+    /// Static extremes in these steps, as [`Kind::at_rest`] holds them, by march; none if samples have their own.
+    pub at_rest: Vec<Vec<f64>>,
 }
 
 impl Run {

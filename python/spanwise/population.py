@@ -37,6 +37,9 @@ FACTORS: dict[Factor, tuple[str, Sense]] = {
     "axle_loads": ("axle_loads", "positive"),
 }
 
+#: What static axle loads depend on: masses, and springs that share them out.
+SHARED_OUT = ("body_mass", "tyre_stiffness", "suspension_stiffness")
+
 #: Most memory that the histories of some samples may take [bytes].
 MOST_BYTES = 4 * 2**30
 
@@ -175,8 +178,8 @@ class Ensemble:
         statics = self._numbers[:, low:high]
         if high == low:
             statics = self._core.at_rest
-            kinds = self._recipe.kinds
-            statics = statics[kinds] if len(kinds) else statics[0]
+            # In their own steps, which are halved for some.
+            statics = statics[0] if len(statics) == 1 else statics[self._core.marches]
         largest, smallest = slice(start, start + width), slice(all_ + start, all_ + start + width)
         return SampleExtremes(
             x.get(name, self.sections),
@@ -259,7 +262,7 @@ class Ensemble:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
         loads = self._core.static_loads()
         varied = len(self._recipe.kinds) > 0 or any(
-            each.name == "body_mass" for each in self._recipe.factors
+            each.name in SHARED_OUT for each in self._recipe.factors
         )
         return frozen(loads if varied else loads[0])
 

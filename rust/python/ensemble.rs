@@ -131,11 +131,18 @@ impl Ensemble {
         Ok((range.start, range.end))
     }
 
-    /// Static extremes of each kind of event, largest and then smallest of all responses; none if samples have their own.
+    /// Static extremes, largest and then smallest of all responses, in a row for each kind of march; none if samples have
+    /// their own.
     #[getter]
     fn at_rest<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let width = self.study.kinds[0].at_rest.len();
-        rows(py, self.study.kinds.iter().flat_map(|kind| kind.at_rest.clone()).collect(), width)
+        let width = 2 * self.layout.responses;
+        rows(py, self.run.at_rest.concat(), width)
+    }
+
+    /// The kind of march of each sample.
+    #[getter]
+    fn marches<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.run.results.marches.clone().into_pyarray(py)
     }
 
     /// Sample, step and cause of every failure.
@@ -171,13 +178,6 @@ impl Ensemble {
         Some((table.path.advance / self.samples.speed(sample, 0), self.run.refinements[march]))
     }
 
-    /// How often the step was halved, by sample.
-    #[getter]
-    fn halvings<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        let marches = self.run.results.marches.iter();
-        marches.map(|&march| self.run.refinements[march as usize]).collect::<Vec<u32>>().into_pyarray(py)
-    }
-
     /// A vehicle as a sample has it, and its bodies.
     fn vehicle(&self, sample: usize, number: usize) -> PyResult<(PyVehicle, Vec<PyBody>)> {
         let mut all = alone::passages(&self.study, &self.samples, sample)?;
@@ -188,7 +188,7 @@ impl Ensemble {
 
     /// Static axle loads [N]: one row if all samples have the same, else one for each.
     fn static_loads<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let varies = self.samples.varies(Parameter::BodyMass);
+        let varies = self.samples.varies_loads();
         let gravity = self.study.settings.gravity;
         let loads = |passages: &[Passage]| -> Vec<f64> {
             let mut all: Vec<f64> = passages.iter().flat_map(|p| p.vehicle.static_loads(gravity)).collect();
