@@ -15,7 +15,7 @@ EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench bench-compare bench-record instructions instructions-record docs clean
+.PHONY: build example test check bench headline bench-compare bench-record instructions instructions-record docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -52,6 +52,10 @@ check: $(EXTENSION)
 bench: $(EXTENSION)
 	$(CARGO) bench --locked
 	$(PY) benches/python.py
+
+# Crossings per second of the ensemble, with the fingerprint of its results.
+headline: $(EXTENSION)
+	$(PY) benches/headline.py
 
 # Against what others would write, which takes packages that nothing else needs.
 bench-compare: $(EXTENSION) $(PEERS)

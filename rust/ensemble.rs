@@ -153,7 +153,7 @@ impl Study {
         }
         if shares {
             for kind in 0..study.kinds.len() {
-                study.kinds[kind].at_rest = together::at_rest(&study, kind)?;
+                study.kinds[kind].at_rest = together::at_rest(&study, kind, &study.table((kind, 0)));
             }
         } else if advance.is_some() {
             let allowed = "only for vehicles that cross alone from the left at constant speed: use step";
@@ -209,9 +209,7 @@ impl Study {
             responses: self.look.chosen.len(),
             axles: most(&|v| v.assembly().contacts.len()),
             bodies: most(&|v| v.bodies().len()),
-            own_statics: !self.shares
-                || samples.varies(Parameter::BodyMass)
-                || samples.varies(Parameter::BridgeStiffness),
+            own_statics: !self.shares || samples.varies_loads() || samples.varies(Parameter::BridgeStiffness),
             own_times: !self.shares,
         }
     }
@@ -226,9 +224,9 @@ impl Study {
         let model = &self.analysis.model;
         let vehicle = self.vehicle(kind);
         let path = self.settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
-        let longest = self.advance.unwrap_or_else(|| {
-            Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest())
-        });
+        let longest = self
+            .advance
+            .unwrap_or_else(|| Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest()));
         let steps = (path / longest - 1e-9).ceil().max(1.0);
         (steps as usize, path / steps)
     }
@@ -268,9 +266,8 @@ impl Study {
         let beta = self.settings.beta;
         // Squared frequencies of bridge, vehicle and tyres on the bridge, of each kind as it is.
         let model = &self.analysis.model;
-        let fastest: Vec<[f64; 3]> = (0..self.kinds.len())
-            .map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind))))
-            .collect();
+        let fastest: Vec<[f64; 3]> =
+            (0..self.kinds.len()).map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind)))).collect();
         let plans: Vec<(usize, f64)> = (0..self.kinds.len()).map(|kind| self.plan(kind)).collect();
         let march = |sample: usize| {
             let kind = samples.kind(sample);
@@ -281,8 +278,8 @@ impl Study {
             };
             let tyres = extreme(Parameter::TyreStiffness, axles, f64::max);
             let springs = tyres.max(extreme(Parameter::SuspensionStiffness, axles, f64::max));
-            let inertia = extreme(Parameter::BodyMass, bodies, f64::min)
-                .min(extreme(Parameter::PitchInertia, bodies, f64::min));
+            let inertia =
+                extreme(Parameter::BodyMass, bodies, f64::min).min(extreme(Parameter::PitchInertia, bodies, f64::min));
             let [bridge, own, on_bridge] = fastest[kind];
             let stiffness = extreme(Parameter::BridgeStiffness, 1, f64::max);
             let fastest = (bridge * stiffness + own * springs / inertia + on_bridge * tyres).sqrt();
@@ -302,7 +299,8 @@ impl Study {
             }
             let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + self.settings.tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
-                let allowed = format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
+                let allowed =
+                    format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
                 return Err(Error::input(format!("speed[{sample}]"), format!("{speed} m/s"), allowed));
             }
             Ok((kind, halvings))
@@ -393,7 +391,9 @@ impl Study {
             put_back(&order, &mut results);
         }
         let refinements = marches.iter().map(|(_, halvings)| *halvings).collect();
-        Ok(Run { results, tables, refinements })
+        let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
+        let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
+        Ok(Run { results, tables, refinements, at_rest })
     }
 
     /// Refuses factors on what a vehicle does not have.
@@ -433,6 +433,8 @@ pub struct Run {
     pub tables: Vec<Arc<Table>>,
     /// How often the step was halved, by march.
     pub refinements: Vec<u32>,
+    /// Static extremes in these steps, as [`Kind::at_rest`] holds them, by march; none if samples have their own.
+    pub at_rest: Vec<Vec<f64>>,
 }
 
 impl Run {

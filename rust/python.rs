@@ -2,9 +2,13 @@
 
 mod bridge;
 mod crossing;
+mod ensemble;
 mod road;
 mod vehicle;
 
+use std::panic::resume_unwind;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use faer::Mat;
@@ -13,7 +17,9 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::ensemble::Progress;
 use crate::error::Error;
+use crate::float_mode::Standard;
 
 type Vector<'py> = Bound<'py, PyArray1<f64>>;
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -58,6 +64,52 @@ fn interruptible<T: Send>(
         None => Ok(result?),
     }
 }
+
+/// Runs `work` on a thread of its own with the interpreter released, for work that has threads that cannot ask. Every
+/// 100 ms Python handles signals, and hears how far it is if it wants to; what either raises stops the work and is raised.
+fn attended<T: Send>(
+    py: Python<'_>,
+    progress: &Progress,
+    total: usize,
+    listener: Option<&Py<PyAny>>,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> PyResult<T> {
+    let tell = |py: Python<'_>| match listener {
+        Some(listener) => listener.call1(py, (progress.done.load(Ordering::Relaxed), total)).map(drop),
+        None => Ok(()),
+    };
+    let mut raised = None;
+    let result = py.detach(|| {
+        std::thread::scope(|scope| {
+            let (ended, end) = channel::<()>();
+            let worker = scope.spawn(move || {
+                // Gone when the work is over, in whatever way.
+                let _ended = ended;
+                // What is prepared here must not depend on the mode of the calling thread either.
+                let _mode = Standard::set();
+                work()
+            });
+            let mut last = Instant::now();
+            while end.recv_timeout(SIGNAL_INTERVAL / 2) == Err(RecvTimeoutError::Timeout) {
+                if raised.is_none() && last.elapsed() >= SIGNAL_INTERVAL {
+                    raised = Python::attach(|py| py.check_signals().and_then(|()| tell(py))).err();
+                    last = Instant::now();
+                }
+                if raised.is_some() {
+                    progress.stop.store(true, Ordering::Relaxed);
+                }
+            }
+            worker.join().unwrap_or_else(|panic| resume_unwind(panic))
+        })
+    });
+    if let Some(error) = raised {
+        return Err(error);
+    }
+    let result = result?;
+    tell(py)?;
+    Ok(result)
+}
+
 /// Row-major values as a two-dimensional array, without a copy.
 fn rows<'py>(py: Python<'py>, values: Vec<f64>, width: usize) -> PyResult<Matrix<'py>> {
     let height = values.len().checked_div(width).unwrap_or(0);
@@ -77,6 +129,8 @@ mod _core {
     use super::bridge::PyBridge;
     #[pymodule_export]
     use super::crossing::{Crossing, cross};
+    #[pymodule_export]
+    use super::ensemble::{Ensemble, ensemble};
     #[pymodule_export]
     use super::road::{PyRoad, road_classes};
     #[pymodule_export]

@@ -39,7 +39,11 @@ fn check_alone(study: &Study, samples: &Samples, run: &Run) {
             for (side, extreme) in sides.into_iter().enumerate() {
                 let at = side * layout.responses + place;
                 let value = numbers[start + at];
-                assert_eq!(value.to_bits(), extreme.value.to_bits(), "sample {sample}, response {r}: {value}, {extreme:?}");
+                assert_eq!(
+                    value.to_bits(),
+                    extreme.value.to_bits(),
+                    "sample {sample}, response {r}: {value}, {extreme:?}"
+                );
                 let (time, position) = run.when(study, samples, sample, instants[at]);
                 assert_eq!([time, position], [extreme.time, extreme.position], "sample {sample}, response {r}");
             }

@@ -6,7 +6,9 @@ from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
+from spanwise.ensemble import ensemble
 from spanwise.layout import Along, Support
+from spanwise.population import Ensemble, Failure
 from spanwise.roads import (
     ISO8608,
     Bump,
@@ -35,8 +37,10 @@ __all__ = [
     "Bump",
     "Camber",
     "Case",
+    "Ensemble",
     "Envelope",
     "Extremes",
+    "Failure",
     "ForceTrain",
     "Hinge",
     "ImpactFactors",
@@ -60,6 +64,7 @@ __all__ = [
     "__version__",
     "convoy",
     "cross",
+    "ensemble",
     "roads",
     "vehicles",
 ]

@@ -1,9 +1,20 @@
-from typing import Final, TypeAlias, final
+from collections.abc import Callable
+from typing import Any, Final, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Bridge", "Crossing", "Road", "Vehicle", "__version__", "cross", "road_classes"]
+__all__ = [
+    "Bridge",
+    "Crossing",
+    "Ensemble",
+    "Road",
+    "Vehicle",
+    "__version__",
+    "cross",
+    "ensemble",
+    "road_classes",
+]
 
 __version__: Final[str]
 
@@ -216,3 +227,71 @@ def cross(
     sections: list[float] | None,
     recovery: str,
 ) -> Crossing: ...
+
+@final
+class Ensemble:
+    @property
+    def numbers(self) -> _Array: ...
+    @property
+    def instants(self) -> NDArray[np.uint32]: ...
+    @property
+    def digests(self) -> NDArray[np.uint64]: ...
+    @property
+    def hash(self) -> int: ...
+    @property
+    def isa(self) -> str: ...
+    @property
+    def threads(self) -> int: ...
+    @property
+    def elapsed(self) -> float: ...
+    @property
+    def shares(self) -> bool: ...
+    @property
+    def own_times(self) -> bool: ...
+    @property
+    def sections(self) -> _Array: ...
+    @property
+    def omega(self) -> _Array: ...
+    @property
+    def at_rest(self) -> _Array: ...
+    @property
+    def failures(self) -> list[tuple[int, int | None, str]]: ...
+    @property
+    def marches(self) -> NDArray[np.uint32]: ...
+    def width(self, name: str) -> int: ...
+    def columns(self, name: str) -> tuple[int, int]: ...
+    def when(self, instants: NDArray[np.uint32]) -> list[_Array]: ...
+    def step(self, sample: int) -> tuple[float, int] | None: ...
+    def vehicle(self, sample: int, number: int) -> tuple[Vehicle, list[_Body]]: ...
+    def static_loads(self) -> _Array: ...
+
+def ensemble(
+    bridge: Bridge,
+    kinds: list[list[_Passage]],
+    *,
+    drive: tuple[str, list[float], list[float]],
+    road: Road,
+    own_road: tuple[Any, ...] | None,
+    modes: int,
+    damping: list[float],
+    damping_matrix: _Array | None,
+    beta: float,
+    step: float | None,
+    advance: float | None,
+    approach: float,
+    ramp: float,
+    tail: float,
+    gravity: float,
+    lift_off: bool,
+    sections: list[float] | None,
+    recovery: str,
+    quantities: list[str],
+    first: int,
+    count: int,
+    kind_of: NDArray[np.uint32],
+    speeds: _Array,
+    factors: list[tuple[str, int, _Array]],
+    threads: int | None,
+    chunk: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> Ensemble: ...

@@ -4,27 +4,21 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Literal, TypeAlias, get_args
+from typing import TypeAlias
 
 from spanwise import _core
-from spanwise._checks import count, flag, number, numbers, shown, word
+from spanwise._checks import number, shown
+from spanwise._conditions import Conditions, Recovery
 from spanwise._remarks import remarks
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
-from spanwise.damping import Damping, resolved
+from spanwise.damping import Damping
 from spanwise.roads import Road, Smooth
 from spanwise.run import Run
 from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
 from spanwise.vehicles import AnyVehicle
 
-Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
 Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
-
-#: Approach on an uneven road unless given [m]: the vehicle reaches the bridge in motion.
-APPROACH = 100.0
-
-#: Way on which unevenness fades in at the start of the approach unless given [m].
-RAMP = 20.0
 
 
 def cross(
@@ -138,65 +132,39 @@ def cross(
     """
     if not isinstance(bridge, Bridge):
         raise TypeError(f"bridge = {bridge!r}: must be a Bridge")
-    passages = _passages(vehicle)
-    if road is not None and not isinstance(road, Road):
-        raise TypeError(f"road = {road!r}: must be a Road")
-    surface = Smooth() if road is None else road
+    passages = passages_of(vehicle)
+    surface = surface_of(road)
     driven = drive_of(drive)
     speed = None if speed is None else number("speed", speed)
-    _check_speed(passages, speed, driven)
-    uneven = not all((each.road or surface).is_smooth for each in passages)
-    if approach is None:
-        approach = APPROACH if uneven else 0.0
-    if ramp is None:
-        ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
-    if modes is None:
-        modes = bridge.default_modes()
-    modes = count("modes", modes)
-    ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
-    beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
-    approach, tail, mask = number("approach", approach), number("tail", tail), number("mask", mask)
-    lift_off = flag("lift_off", lift_off)
-    recovery_word = word("recovery", recovery, *get_args(Recovery))
-    if not 0.0 <= mask < 1.0:
-        raise ValueError(
-            f"mask = {mask:g}: must be a fraction of the largest static value, from 0 to below 1"
-        )
-    core = _core.cross(
-        bridge._core,
-        [_core_passage(each, speed, driven, surface) for each in passages],
+    check_speed([passages], speed, driven)
+    conditions = Conditions.of(
+        bridge,
+        uneven=not all((each.road or surface).is_smooth for each in passages),
         modes=modes,
-        damping=ratios,
-        damping_matrix=matrix,
-        beta=beta,
-        step=None if step is None else number("step", step),
+        damping=damping,
         approach=approach,
         ramp=ramp,
         tail=tail,
+        sections=sections,
+        recovery=recovery,
+        step=step,
+        beta=beta,
         gravity=gravity,
         lift_off=lift_off,
-        sections=None if sections is None else numbers("sections", sections),
-        recovery=recovery_word,
+        mask=mask,
+    )
+    core = _core.cross(
+        bridge._core,
+        [_core_passage(each, speed, driven, surface) for each in passages],
+        **conditions.core,
     )
     settings: dict[str, object] = {
-        "speed": speed,
-        "modes": modes,
+        **({} if speed is None else {"speed": speed}),
+        "modes": conditions.modes,
         "drive": plain_drive(driven),
-        "damping": matrix.tolist() if matrix is not None else ratios,
-        "approach": approach,
-        "ramp": ramp,
-        "tail": tail,
-        "recovery": recovery_word,
-        "beta": beta,
-        "gravity": gravity,
-        "lift_off": lift_off,
-        "mask": mask,
+        **conditions.settings,
         "step": core.step,
     }
-    if matrix is None and len(ratios) == 1:
-        settings["damping"] = ratios[0]
-    if speed is None:
-        del settings["speed"]
     run = Run(bridge, passages, surface, settings, core)
     for k in range(len(passages)):
         for remark in remarks(run, k):
@@ -205,7 +173,15 @@ def cross(
     return run
 
 
-def _passages(vehicle: object) -> tuple[Passage, ...]:
+def surface_of(road: object) -> Road:
+    """The road given, or a smooth one."""
+    if road is not None and not isinstance(road, Road):
+        raise TypeError(f"road = {road!r}: must be a Road")
+    return Smooth() if road is None else road
+
+
+def passages_of(vehicle: object) -> tuple[Passage, ...]:
+    """Who crosses: a vehicle, or several, each with its own way."""
     if isinstance(vehicle, Wheels):
         return (Passage(vehicle=vehicle),)  # type: ignore[arg-type]
     if isinstance(vehicle, Passage):
@@ -221,20 +197,20 @@ def _passages(vehicle: object) -> tuple[Passage, ...]:
     )
 
 
-def _check_speed(passages: tuple[Passage, ...], speed: float | None, drive: Drive) -> None:
+def check_speed(events: Sequence[tuple[Passage, ...]], speed: float | None, drive: Drive) -> None:
     """Refuses a speed that is missing, and one beside speeds in time that nothing uses."""
-    timed = [isinstance(each.drive or drive, Speeds) for each in passages]
-    for k, (each, has_times) in enumerate(zip(passages, timed, strict=True)):
-        if has_times and each.speed is not None:
-            key = "speed" if len(passages) == 1 else f"vehicles[{k}].speed"
-            raise ValueError(f"{key} = {each.speed:g}: not used with speeds in time")
-    needed = any(
-        each.speed is None and not has_times
-        for each, has_times in zip(passages, timed, strict=True)
-    )
+    needed = timed = False
+    for passages in events:
+        for k, each in enumerate(passages):
+            has_times = isinstance(each.drive or drive, Speeds)
+            if has_times and each.speed is not None:
+                key = "speed" if len(passages) == 1 else f"vehicles[{k}].speed"
+                raise ValueError(f"{key} = {each.speed:g}: not used with speeds in time")
+            timed = timed or has_times
+            needed = needed or (each.speed is None and not has_times)
     if speed is None and needed:
         raise ValueError("speed: missing; give it here or with every passage")
-    if speed is not None and not needed and any(timed):
+    if speed is not None and not needed and timed:
         raise ValueError(f"speed = {speed:g}: not used with speeds in time")
 
 
@@ -242,13 +218,12 @@ def _core_passage(
     passage: Passage, speed: float | None, drive: Drive, road: Road
 ) -> _core._Passage:
     own = passage.speed if passage.speed is not None else speed
-    lane = passage.lane if passage.lane is not None else int(passage.direction == "left")
     return (
         passage.vehicle._core,
         own,
         core_drive(passage.drive or drive),
         passage.direction,
         passage.entry,
-        lane,
+        passage.lane_number,
         (passage.road or road)._core,
     )

@@ -107,8 +107,8 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     way = [f"{motion.speed[0]:g} m/s", _drive(drive)]
     way.append(f"{motion.speed[-1]:.6g} m/s at the end")
     if not is_alone(run.passages):
-        lane = int(passage.direction == "left") if passage.lane is None else passage.lane
-        way[:0] = [f"to the {passage.direction} in lane {lane}", f"enters at {passage.entry:g} s"]
+        lane = f"in lane {passage.lane_number}"
+        way[:0] = [f"to the {passage.direction} {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
     for remark in remarks(run, number):
         yield f"          {remark}"

@@ -224,6 +224,11 @@ class Passage:
         ):
             raise ValueError(f"lane = {shown(self.lane)}: must be a whole number")
 
+    @property
+    def lane_number(self) -> int:
+        """The lane, also where it follows from the direction."""
+        return int(self.direction == "left") if self.lane is None else self.lane
+
     def __repr__(self) -> str:
         given = [f"{self.vehicle!r} to the {self.direction}"]
         given += [f"entry={self.entry:g}"] if self.entry else []

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
-use super::Study;
 use crate::analysis::Analysis;
 use crate::course::Passage;
 use crate::crossing::{ModalBridge, cross_all};
@@ -103,8 +103,9 @@ pub fn cross(
     let envelope = survey(&history, rows, &packed, responses, go_on)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
-    let chosen: Vec<(usize, f64)> =
-        (study.look.chosen.iter().zip(&study.look.deflections)).map(|(&r, &d)| (r, if d { stiffness } else { 1.0 })).collect();
+    let chosen: Vec<(usize, f64)> = (study.look.chosen.iter().zip(&study.look.deflections))
+        .map(|(&r, &d)| (r, if d { stiffness } else { 1.0 }))
+        .collect();
     record.numbers.fill(f64::NAN);
     record.instants.fill(0);
     let mut put = |column: Column, offset: usize, values: &mut dyn Iterator<Item = f64>| {
@@ -140,7 +141,9 @@ fn ride(
     instants: &mut [u32],
 ) {
     let axles = history.axles;
-    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| (0.0..=length).contains(x));
+    // With the last axle on the end of the bridge, rounding does not decide.
+    let bridge = 0.0..=length * (1.0 + 1e-12);
+    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| bridge.contains(x));
     let first = (0..history.len()).find(|&i| on(i)).unwrap_or(0);
     let there: Vec<usize> = (first..=(first..history.len()).rev().find(|&i| on(i)).unwrap_or(first)).collect();
     let count = there.len().max(1) as f64;

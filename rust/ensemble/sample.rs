@@ -167,6 +167,12 @@ impl Samples {
         self.factors.iter().any(|factors| factors.parameter == parameter)
     }
 
+    /// Whether static axle loads are varied: by masses, or by springs that share them out.
+    pub fn varies_loads(&self) -> bool {
+        let shares = [Parameter::BodyMass, Parameter::TyreStiffness, Parameter::SuspensionStiffness];
+        shares.into_iter().any(|parameter| self.varies(parameter))
+    }
+
     /// Whether all samples of a kind are alike but for their roads.
     pub fn alike(&self) -> bool {
         self.factors.iter().all(|factors| factors.values.len() == factors.width) && self.speeds.len() == 1
@@ -224,8 +230,7 @@ impl Samples {
         let contacts = &vehicle.assembly().contacts;
         if vehicle.bodies().is_empty() {
             let shares = contacts.iter().enumerate();
-            let scaled: Vec<f64> =
-                shares.map(|(k, c)| c.share * factor(Parameter::BodyMass, axle + k)).collect();
+            let scaled: Vec<f64> = shares.map(|(k, c)| c.share * factor(Parameter::BodyMass, axle + k)).collect();
             let positions: Vec<f64> = contacts.iter().map(|c| c.position).collect();
             return match contacts[0].law {
                 ContactLaw::Force => Vehicle::force_train(&scaled, &positions),

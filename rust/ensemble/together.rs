@@ -32,16 +32,16 @@ pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
     (last, if time > end + 1e-9 * h { 1.0 - (time - end) / h } else { 1.0 })
 }
 
-/// The static extremes of a kind as it is: the largest of the responses looked at, then the smallest.
-pub fn at_rest(study: &Study, kind: usize) -> Result<Vec<f64>, Error> {
-    let table = study.table((kind, 0));
-    let way = Way { table: &table, rows: &study.analysis.rows, look: &study.look, closely: false, isa: Isa::Scalar };
+/// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
+/// smallest.
+pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
+    let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely: false, isa: Isa::Scalar };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
-    let largest = row_of.iter().map(|&row| extremes(&table, &seen, row, 0)[0].0);
-    let smallest = row_of.iter().map(|&row| extremes(&table, &seen, row, 0)[1].0);
-    Ok(largest.chain(smallest).collect())
+    let largest = row_of.iter().map(|&row| extremes(table, &seen, row, 0)[0].0);
+    let smallest = row_of.iter().map(|&row| extremes(table, &seen, row, 0)[1].0);
+    largest.chain(smallest).collect()
 }
 
 /// Largest and smallest of a row in one lane, each with its instant.
@@ -177,7 +177,8 @@ impl Task<'_> {
             }
             // The lanes: first all samples side by side; if one of them fails, each in turn in all lanes, to show which.
             // Others come to the same as side by side.
-            let together = self.group(members, &places, &ready, false, &mut steppers, (&mut scratch, &mut roads), go_on);
+            let together =
+                self.group(members, &places, &ready, false, &mut steppers, (&mut scratch, &mut roads), go_on);
             match together {
                 Ok(group) => {
                     for (lane, &place) in places.iter().enumerate() {

@@ -145,7 +145,8 @@ impl<L: Lane> Ride<L> {
                 if L::any(off) || L::any(grounded.less(one)) {
                     let now = L::select(off, zero, one);
                     let active = active.map_or(one, |active| active[i]);
-                    aloft = aloft + active * (one - now);
+                    // The time from the instant before counts if the wheel was off then.
+                    aloft = aloft + active * (one - grounded);
                     lift_offs = lift_offs + active * (grounded * (one - now));
                     grounded = now;
                 }

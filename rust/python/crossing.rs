@@ -29,7 +29,8 @@ pub struct Crossing {
     vehicles: Vec<Vehicle>,
 }
 
-const QUANTITIES: [(&str, Quantity); 6] = [
+/// Kinds of response by the names that Python has for them.
+pub const QUANTITIES: [(&str, Quantity); 6] = [
     ("deflection", Quantity::Deflection),
     ("moment", Quantity::Moment),
     ("shear_left", Quantity::ShearLeft),
@@ -38,7 +39,8 @@ const QUANTITIES: [(&str, Quantity); 6] = [
     ("clamp_moments", Quantity::ClampMoment),
 ];
 
-fn quantity(name: &str) -> Result<Quantity, Error> {
+/// The kind of response of this name.
+pub fn quantity(name: &str) -> Result<Quantity, Error> {
     QUANTITIES.iter().find(|q| q.0 == name).map(|q| q.1).ok_or_else(|| {
         let names: Vec<&str> = QUANTITIES.iter().map(|q| q.0).collect();
         Error::input("quantity", format!("\"{name}\""), format!("must be one of {}", names.join(", ")))
@@ -206,13 +208,14 @@ impl Crossing {
 }
 
 /// How a vehicle is driven: its name, and the numbers that go with it.
-type PyDrive = (String, Vec<f64>, Vec<f64>);
+pub type PyDrive = (String, Vec<f64>, Vec<f64>);
 
 /// Vehicle, speed, drive, direction, entry, lane, road.
-type PyPassage<'py> =
+pub type PyPassage<'py> =
     (PyRef<'py, PyVehicle>, Option<f64>, Option<PyDrive>, String, f64, i64, Option<PyRef<'py, PyRoad>>);
 
-fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
+/// A drive as Python names it.
+pub fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
     match (name.as_str(), &first[..]) {
         ("constant-speed", []) => Ok(Drive::ConstantSpeed),
         ("constant-traction", []) => Ok(Drive::ConstantTraction),
@@ -229,7 +232,8 @@ fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
     }
 }
 
-fn passage((vehicle, speed, driven, direction, entry, lane, road): PyPassage<'_>) -> Result<Passage, Error> {
+/// A vehicle on its way.
+pub fn passage((vehicle, speed, driven, direction, entry, lane, road): PyPassage<'_>) -> Result<Passage, Error> {
     let direction = match direction.as_str() {
         "right" => Direction::Right,
         "left" => Direction::Left,
@@ -244,6 +248,30 @@ fn passage((vehicle, speed, driven, direction, entry, lane, road): PyPassage<'_>
         lane,
         road: road.map(|road| Arc::new(road.0.clone())),
     })
+}
+
+/// The recovery of this name.
+pub fn recovery_named(name: &str) -> Result<Recovery, Error> {
+    match name {
+        "force-summation" => Ok(Recovery::ForceSummation),
+        "force-summation-by-rates" => Ok(Recovery::ForceSummationByRates),
+        "superposition" => Ok(Recovery::Superposition),
+        _ => {
+            let allowed = "must be force-summation, force-summation-by-rates or superposition";
+            Err(Error::input("recovery", format!("\"{name}\""), allowed))
+        }
+    }
+}
+
+/// Damping by the matrix, if there is one, or else by ratios.
+pub fn damped(ratios: Vec<f64>, matrix: Option<PyReadonlyArray2<'_, f64>>) -> Damping {
+    match matrix {
+        None => Damping::Ratios(ratios),
+        Some(c) => {
+            let c = c.as_array();
+            Damping::Viscous(Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[[i, j]]))
+        }
+    }
 }
 
 /// Computes one crossing.
@@ -268,27 +296,13 @@ pub fn cross<'py>(
     sections: Option<Vec<f64>>,
     recovery: &str,
 ) -> PyResult<Crossing> {
-    let recovery = match recovery {
-        "force-summation" => Recovery::ForceSummation,
-        "force-summation-by-rates" => Recovery::ForceSummationByRates,
-        "superposition" => Recovery::Superposition,
-        _ => {
-            let allowed = "must be force-summation, force-summation-by-rates or superposition";
-            return Err(Error::input("recovery", format!("\"{recovery}\""), allowed).into());
-        }
-    };
-    let damping = match damping_matrix {
-        None => Damping::Ratios(damping),
-        Some(c) => {
-            let c = c.as_array();
-            Damping::Viscous(Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[[i, j]]))
-        }
-    };
+    let asked =
+        Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
     let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
     // Every passage says its own speed or brings it with its drive.
     let settings = Settings { beta, step, approach, ramp, tail, gravity, lift_off, ..Settings::at_speed(f64::NAN) };
     let (analysis, outcome) = interruptible(py, |go_on| {
-        let analysis = bridge.0.analysis(Asked { modes, damping, sections, recovery }, go_on)?;
+        let analysis = bridge.0.analysis(asked, go_on)?;
         let outcome = analysis.cross_all(&passages, &settings, go_on)?;
         Ok((analysis, outcome))
     })?;

@@ -20,7 +20,7 @@ type PyHinge = (usize, f64, f64, f64);
 type PySpring = (usize, f64, f64, f64, f64, PyFriction);
 
 /// Mass, pitch inertia and height, axles, hinge, springs.
-type PyBody = ([f64; 3], Vec<PyAxle>, Option<PyHinge>, Vec<PySpring>);
+pub type PyBody = ([f64; 3], Vec<PyAxle>, Option<PyHinge>, Vec<PySpring>);
 
 /// A vehicle, or a train of forces or masses.
 #[pyclass(name = "Vehicle", frozen, module = "spanwise._core")]
@@ -77,6 +77,31 @@ impl PyVehicle {
         let suspension = if locked { Suspension::Locked } else { Suspension::Sliding };
         self.0.frequencies(suspension).into_pyarray(py)
     }
+}
+
+/// What [`body`] makes this body of.
+pub fn parts_of(body: &Body) -> PyBody {
+    let rubs = |Friction { limit, initial, build_up }: Friction| match build_up {
+        BuildUp::Leaf(decay) => (limit, initial, None, Some(decay)),
+        BuildUp::Elastic(stick) => (limit, initial, Some(stick), None),
+        BuildUp::Rigid => (limit, initial, None, None),
+    };
+    let axle = |a: &Axle| {
+        let numbers =
+            [a.position, a.mass, a.tyre_stiffness, a.tyre_damping, a.suspension_stiffness, a.suspension_damping];
+        (numbers, rubs(a.friction))
+    };
+    let (mut hinge, mut springs) = (None, Vec::new());
+    for coupling in &body.couplings {
+        match *coupling {
+            Coupling::Hinge { to, at, own, height } => hinge = Some((to, at, own, height)),
+            Coupling::Spring { to, at, own, stiffness, damping, friction } => {
+                springs.push((to, at, own, stiffness, damping, rubs(friction)));
+            }
+        }
+    }
+    let numbers = [body.mass, body.pitch_inertia, body.cg_height];
+    (numbers, body.axles.iter().map(axle).collect(), hinge, springs)
 }
 
 fn body(([mass, pitch_inertia, cg_height], axles, hinge, springs): PyBody) -> Body {

@@ -1,0 +1,101 @@
+"""The conditions that all crossings of a call have in common, checked and filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal, TypeAlias, get_args
+
+from spanwise._checks import count, flag, number, numbers, word
+from spanwise.bridge import Bridge
+from spanwise.damping import Damping, resolved
+
+Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
+
+#: Approach on an uneven road unless given [m]: the vehicle reaches the bridge in motion.
+APPROACH: Final = 100.0
+
+#: Way on which unevenness fades in at the start of the approach unless given [m].
+RAMP: Final = 20.0
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """How vehicles cross, all but their drive and speed.
+
+    Attributes
+    ----------
+    core : dict
+        As the core takes them.
+    settings : dict
+        As a case file writes them; modes, step and sections are not among them.
+    modes : int
+        Number of modes.
+    mask : float
+        Below which part of the largest static value there are no impact factors.
+    """
+
+    core: dict[str, Any]
+    settings: dict[str, object]
+    modes: int
+    mask: float
+
+    @classmethod
+    def of(
+        cls,
+        bridge: Bridge,
+        *,
+        uneven: bool,
+        modes: int | None,
+        damping: Damping,
+        approach: float | None,
+        ramp: float | None,
+        tail: float,
+        sections: Sequence[float] | None,
+        recovery: Recovery,
+        step: float | None,
+        beta: float,
+        gravity: float,
+        lift_off: bool,
+        mask: float,
+    ) -> Conditions:
+        """Arguments of `cross` of the same names; `uneven` tells whether any road is."""
+        if approach is None:
+            approach = APPROACH if uneven else 0.0
+        if ramp is None:
+            ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
+        modes = count("modes", bridge.default_modes() if modes is None else modes)
+        ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
+        beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
+        approach, tail, mask = number("approach", approach), number("tail", tail), masked(mask)
+        common = {
+            "approach": approach,
+            "ramp": ramp,
+            "tail": tail,
+            "recovery": word("recovery", recovery, *get_args(Recovery)),
+            "beta": beta,
+            "gravity": gravity,
+            "lift_off": flag("lift_off", lift_off),
+        }
+        core = {
+            **common,
+            "modes": modes,
+            "damping": ratios,
+            "damping_matrix": matrix,
+            "step": None if step is None else number("step", step),
+            "sections": None if sections is None else numbers("sections", sections),
+        }
+        plain: object = matrix.tolist() if matrix is not None else ratios
+        if matrix is None and len(ratios) == 1:
+            plain = ratios[0]
+        return cls(core, {"damping": plain, **common, "mask": mask}, modes, mask)
+
+
+def masked(mask: object) -> float:
+    """The part of the largest static value below which there are no impact factors."""
+    part = number("mask", mask)
+    if not 0.0 <= part < 1.0:
+        raise ValueError(
+            f"mask = {part:g}: must be a fraction of the largest static value, from 0 to below 1"
+        )
+    return part

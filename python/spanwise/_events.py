@@ -1,0 +1,197 @@
+"""Who crosses in the samples of an ensemble, how fast, and on which road of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise import _core
+from spanwise._checks import array, shown
+from spanwise._traffictable import is_random
+from spanwise._wheels import Wheels
+from spanwise.crossing import passages_of
+from spanwise.roads import ISO8608, Road, Sum
+from spanwise.roads.base import total
+from spanwise.traffic import Drive, Passage, core_drive
+
+Array: TypeAlias = NDArray[np.float64]
+Event: TypeAlias = tuple[Passage, ...]
+
+
+def events_of(vehicle: object) -> tuple[Event, ...]:
+    """The kinds of event: one of a vehicle, a passage or a list of these, else one for each entry.
+
+    A list of `Passage` is one event, a list of vehicles is a fleet of which one crosses at a time,
+    and a list of lists of `Passage` are several events.
+    """
+    if isinstance(vehicle, Wheels | Passage):
+        return (passages_of(vehicle),)
+    if not isinstance(vehicle, list | tuple) or not vehicle:
+        raise TypeError(
+            f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage, a list of Passage "
+            "for one event, or a list of vehicles or of lists of Passage, of which sample i drives "
+            "number kind[i]"
+        )
+    if all(isinstance(each, Passage) for each in vehicle):
+        return (tuple(vehicle),)
+    events = []
+    for i, each in enumerate(vehicle):
+        if isinstance(each, Passage) and any(isinstance(other, Wheels) for other in vehicle):
+            raise TypeError(
+                f"vehicle[{i}] = {shown(each)}: a Passage beside vehicles could be part of one "
+                "event or an event of its own; give a list of Passage, or a list of lists of them"
+            )
+        try:
+            events.append(passages_of(each))
+        except TypeError:
+            raise TypeError(
+                f"vehicle[{i}] = {shown(each)}: must be a vehicle, a train, or a list of Passage"
+            ) from None
+    return tuple(events)
+
+
+def own_road(road: Road, events: Sequence[Event], own_roads: bool) -> tuple[Road, ISO8608 | None]:
+    """What all samples share of a road, and what is drawn anew for each."""
+    if not own_roads:
+        return road, None
+    parts = [*_parts(road)]
+    random = [part for part in parts if isinstance(part, ISO8608)]
+    if len(random) > 1:
+        raise ValueError(
+            f"road = {shown(road)}: has {len(random)} random parts, of which one alone can be "
+            "drawn anew for each sample; give one, or own_roads=False to take all as they stand"
+        )
+    for event in events:
+        for k, passage in enumerate(event):
+            if passage.road is not None and is_random(passage.road):
+                raise ValueError(
+                    f"vehicles[{k}].road = {shown(passage.road)}: is random, but only the road "
+                    "of the ensemble is drawn anew for each sample; give it as road, or "
+                    "own_roads=False to take all roads as they stand"
+                )
+    if not random:
+        return road, None
+    return total(part for part in parts if not isinstance(part, ISO8608)), random[0]
+
+
+def _parts(road: Road) -> list[Road]:
+    """All that a road is the sum of."""
+    if isinstance(road, Sum):
+        return [each for part in road.parts for each in _parts(part)]
+    return [road]
+
+
+def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[np.uint32]:
+    """The kind of event of every sample; empty if there is one kind."""
+    if kind is None:
+        if len(events) > 1:
+            raise ValueError(
+                f"kind: missing; give for each of the {samples} samples which of the "
+                f"{len(events)} kinds of event it is, from 0"
+            )
+        return np.zeros(0, dtype=np.uint32)
+    try:
+        kinds = np.asarray(kind)
+    except ValueError:  # rows of different lengths
+        kinds = np.array(None)
+    if kinds.dtype.kind not in "iu" and kinds.size > 0:
+        raise ValueError(f"kind = {shown(kind)}: must be whole numbers, one for each sample")
+    if kinds.shape != (samples,):
+        raise ValueError(
+            f"kind = shape {kinds.shape}: must be one number for each of the {samples} samples"
+        )
+    wrong = np.flatnonzero((kinds < 0) | (kinds >= len(events)))
+    if len(wrong) > 0:
+        i = int(wrong[0])
+        raise ValueError(f"kind[{i}] = {kinds[i]}: must be from 0 to {len(events) - 1}")
+    return kinds.astype(np.uint32)
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """The speeds of an ensemble [m/s].
+
+    Attributes
+    ----------
+    given : float or ndarray or None
+        As the caller gave them.
+    column : ndarray
+        As the core takes them: one for all, one for each sample, or one for each vehicle of it.
+    """
+
+    given: float | Array | None
+    column: Array
+
+    def of(self, sample: int, vehicle: int, samples: int) -> float:
+        """Of a vehicle of a sample that has none of its own."""
+        if len(self.column) == 1:
+            return float(self.column[0])
+        own = self.column.reshape(samples, -1)[sample]
+        return float(own[vehicle if len(own) > 1 else 0])
+
+
+def speeds_of(speed: object, events: Sequence[Event], samples: int) -> Speeds:
+    """Speeds as they were given: a number, one for each sample, or one for each of its vehicles."""
+    if speed is None:
+        return Speeds(None, np.ones(1))
+    values = array("speed", speed)
+    if values.ndim == 0:
+        return Speeds(float(values), values.reshape(1))
+    most = max(map(len, events))
+    allowed = [(samples,)] if most == 1 else [(samples,), (samples, most)]
+    if values.shape not in allowed and values.shape != (samples, 1):
+        shapes = " or ".join(map(str, allowed))
+        raise ValueError(f"speed = shape {values.shape}: must be a number or of shape {shapes}")
+    for place in np.argwhere(~(values > 0.0))[:1]:
+        key = ", ".join(map(str, place))
+        raise ValueError(
+            f"speed[{key}] = {values[tuple(place)]:g}: must be finite and greater than 0"
+        )
+    return Speeds(values, np.ascontiguousarray(values).ravel())
+
+
+def is_simple(event: Event, drive: Drive) -> bool:
+    """Whether it is one vehicle at constant speed from the left, which shares its geometry."""
+    if len(event) > 1:
+        return False
+    (passage,) = event
+    plain = passage.direction == "right" and passage.entry == 0.0 and passage.road is None
+    return plain and (passage.drive or drive) == "constant-speed"
+
+
+def speeds_by_kind(
+    speeds: Speeds, events: Sequence[Event], kinds: NDArray[np.uint32], samples: int
+) -> Speeds:
+    """The speeds with those that simple events bring put in their places."""
+    if len(events) == 1:
+        own = events[0][0].speed
+        return speeds if own is None else Speeds(speeds.given, np.array([own]))
+    column = np.broadcast_to(speeds.column, samples).copy()
+    for number, ((passage,)) in enumerate(events):
+        if passage.speed is not None:
+            column[kinds == number] = passage.speed
+    return Speeds(speeds.given, column)
+
+
+def core_passage(passage: Passage, *, own_speed: bool) -> _core._Passage:
+    """As the core takes it; what is missing is that of the ensemble."""
+    return (
+        passage.vehicle._core,
+        passage.speed if own_speed else None,
+        None if passage.drive is None else core_drive(passage.drive),
+        passage.direction,
+        passage.entry,
+        passage.lane_number,
+        None if passage.road is None else passage.road._core,
+    )
+
+
+def core_road(road: ISO8608 | None, seed: int) -> tuple[Any, ...] | None:
+    """What the core makes the samples' roads of."""
+    if road is None:
+        return None
+    return road.G, road.waviness, road.band, road.contact_patch, road.period, seed

@@ -1,0 +1,419 @@
+"""What an ensemble of crossings gives: extremes, impact factors and failures of every sample."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._checks import count, shown
+from spanwise._conditions import masked
+from spanwise._keys import suggestion
+from spanwise._recipe import Recipe
+from spanwise.bridge import Bridge
+from spanwise.columns import Array, Moments, SampleExtremes, Sense, frozen
+from spanwise.run import Run
+
+if TYPE_CHECKING:
+    from spanwise import _core
+
+Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
+Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"]
+History: TypeAlias = Literal[
+    "deflection", "moment", "shear_left", "shear_right", "reactions", "clamp_moments", "axle_loads"
+]
+
+#: Quantity and sense of every impact factor, as for a single crossing.
+FACTORS: dict[Factor, tuple[str, Sense]] = {
+    "deflection": ("deflection", "positive"),
+    "sagging": ("moment", "positive"),
+    "hogging": ("moment", "negative"),
+    "shear": ("shear", "either"),
+    "reactions": ("reactions", "either"),
+    "axle_loads": ("axle_loads", "positive"),
+}
+
+#: What static axle loads depend on: masses, and springs that share them out.
+SHARED_OUT = ("body_mass", "tyre_stiffness", "suspension_stiffness")
+
+#: Most memory that the histories of some samples may take [bytes].
+MOST_BYTES = 4 * 2**30
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A sample that has no result; its rows are NaN.
+
+    Attributes
+    ----------
+    sample : int
+        Its number: `Ensemble.first` plus its row.
+    step : int or None
+        The time step in which it failed, if it came so far.
+    cause : str
+        Why.
+    """
+
+    sample: int
+    step: int | None
+    cause: str
+
+
+@dataclass(frozen=True, eq=False)
+class BodyAccelerations:
+    """Vertical accelerations of the bodies of the first vehicle and those behind it.
+
+    Attributes
+    ----------
+    max : ndarray, shape (sample, body)
+        Largest magnitude over the whole crossing [m/s2].
+    rms : ndarray, shape (sample, body)
+        Root mean square from the first axle on the bridge to the last off it [m/s2].
+    """
+
+    max: Array
+    rms: Array
+
+
+class Ensemble:
+    """The result of many crossings of one bridge, one row for each sample.
+
+    Attributes
+    ----------
+    bridge : Bridge
+        The bridge.
+    samples : int
+        How many.
+    first, seed : int
+        Number of the first sample, and the seed: with its number they make a sample what it is.
+    speed : float or ndarray or None
+        Speeds as given [m/s].
+    settings : dict
+        Keyword arguments of `ensemble` that compute it again, defaults filled in.
+    sections : ndarray, shape (section,)
+        Where responses are looked at [m].
+    supports : ndarray, shape (support,)
+        Positions of the supports [m].
+    frequencies : ndarray, shape (mode,)
+        Natural frequencies of the included modes [Hz].
+    quantities : tuple of str
+        What was looked at.
+    failures : tuple of Failure
+        Samples without a result.
+    digests : ndarray of uint64, shape (sample,)
+        Fingerprint of all numbers of each sample.
+    hash : str
+        Fingerprint of the whole, 16 hexadecimal digits: the same for the same ensemble on every
+        machine, whatever its instruction set and however many threads.
+    isa : str
+        Instruction set used.
+    threads : int
+        Threads used.
+    elapsed : float
+        Time that it took [s].
+    shares_geometry : bool
+        Whether the samples were marched side by side; if not, each was a crossing of its own, which
+        takes about ten times as long.
+    """
+
+    def __init__(
+        self, bridge: Bridge, recipe: Recipe, quantities: Sequence[Quantity], core: _core.Ensemble
+    ) -> None:
+        self._recipe, self._core = recipe, core
+        self.bridge = bridge
+        self.quantities = tuple(quantities)
+        self.samples, self.first, self.seed = recipe.samples, recipe.first, recipe.seed
+        self.speed = recipe.speeds.given
+        self.sections: Array = frozen(core.sections)
+        self.frequencies: Array = frozen(core.omega / (2.0 * np.pi))
+        self.supports: Array = frozen(np.array([x for x, _ in bridge.supports]))
+        self.failures = tuple(
+            Failure(self.first + sample, step, cause) for sample, step, cause in core.failures
+        )
+        self._numbers: Array = frozen(core.numbers)
+        self._instants: NDArray[np.uint32] = core.instants
+        self._instants.setflags(write=False)
+        self.digests: NDArray[np.uint64] = core.digests
+        self.digests.setflags(write=False)
+        self.hash = f"{core.hash:016x}"
+        self.isa, self.threads, self.elapsed = core.isa, core.threads, core.elapsed
+        self.shares_geometry = core.shares
+
+    @property
+    def rate(self) -> float:
+        """Crossings per second."""
+        return self.samples / self.elapsed
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Keyword arguments of `ensemble` that compute it again, defaults filled in."""
+        return self._recipe.settings
+
+    @cached_property
+    def _starts(self) -> dict[str, tuple[int, int]]:
+        """The first response of every kind among all, and how many there are."""
+        found, start = {}, 0
+        for name in _cores(self.quantities):
+            width = self._core.width(name)
+            found[name] = (start, width)
+            start += width
+        found[""] = (start, 0)
+        return found
+
+    def _extremes(self, name: str) -> SampleExtremes:
+        """Of one kind of response."""
+        if name not in self._starts:
+            have = ", ".join(self.quantities)
+            raise AttributeError(
+                f"{name}: was not looked at; this ensemble has {have} (give quantities)"
+            )
+        start, width = self._starts[name]
+        all_ = self._starts[""][0]
+        x = {"reactions": self.supports, "clamp_moments": self.bridge.clamps}
+        low, high = self._core.columns("statics")
+        statics = self._numbers[:, low:high]
+        if high == low:
+            statics = self._core.at_rest
+            # In their own steps, which are halved for some.
+            statics = statics[0] if len(statics) == 1 else statics[self._core.marches]
+        largest, smallest = slice(start, start + width), slice(all_ + start, all_ + start + width)
+        return SampleExtremes(
+            x.get(name, self.sections),
+            self._numbers[:, largest],
+            self._numbers[:, smallest],
+            frozen(statics[..., largest]),
+            frozen(statics[..., smallest]),
+            lambda of_largest: self._moments(start if of_largest else all_ + start, width),
+        )
+
+    def _moments(self, start: int, width: int) -> Moments:
+        """Times and positions of some of the extremes, counted through responses and loads."""
+        if self._core.own_times:
+            time, position = (
+                self._numbers[:, at + start : at + start + width]
+                for at, _ in map(self._core.columns, ("times", "positions"))
+            )
+            return time, position
+        time, position = self._core.when(self._instants[:, start : start + width])
+        missing = np.isnan(self._extreme_values[:, start : start + width])
+        time[missing] = position[missing] = np.nan
+        return time, position
+
+    @property
+    def _extreme_values(self) -> Array:
+        """Extremes of responses and loads in the order of their instants."""
+        return self._numbers[:, : self._core.columns("axle_loads")[1]]
+
+    @cached_property
+    def deflection(self) -> SampleExtremes:
+        """Deflections down [m]."""
+        return self._extremes("deflection")
+
+    @cached_property
+    def moment(self) -> SampleExtremes:
+        """Bending moments, sagging positive [N m]."""
+        return self._extremes("moment")
+
+    @cached_property
+    def shear_left(self) -> SampleExtremes:
+        """Shear just left of the sections [N]."""
+        return self._extremes("shear_left")
+
+    @cached_property
+    def shear_right(self) -> SampleExtremes:
+        """Shear just right of the sections [N]."""
+        return self._extremes("shear_right")
+
+    @cached_property
+    def shear(self) -> SampleExtremes:
+        """Shear on both sides of the sections together [N]."""
+        return self.shear_left.merged(self.shear_right)
+
+    @cached_property
+    def reactions(self) -> SampleExtremes:
+        """Support reactions, up [N]."""
+        return self._extremes("reactions")
+
+    @cached_property
+    def clamp_moments(self) -> SampleExtremes:
+        """Moments of the supports of `Bridge.clamps` [N m]."""
+        return self._extremes("clamp_moments")
+
+    @cached_property
+    def axle_loads(self) -> SampleExtremes:
+        """Axle loads [N], over the whole crossing, of all vehicles in their order."""
+        start, end = self._core.columns("axle_loads")
+        axles = (end - start) // 2
+        return SampleExtremes(
+            np.arange(1.0, axles + 1.0),
+            self._numbers[:, start : start + axles],
+            self._numbers[:, start + axles : end],
+            self.static_axle_loads,
+            self.static_axle_loads,
+            lambda largest: self._moments(start if largest else start + axles, axles),
+        )
+
+    @cached_property
+    def static_axle_loads(self) -> Array:
+        """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
+        loads = self._core.static_loads()
+        varied = len(self._recipe.kinds) > 0 or any(
+            each.name in SHARED_OUT for each in self._recipe.factors
+        )
+        return frozen(loads if varied else loads[0])
+
+    def _block(self, name: str) -> Array:
+        start, end = self._core.columns(name)
+        return self._numbers[:, start:end]
+
+    @property
+    def load_coefficients(self) -> Array:
+        """Standard deviation of each axle load by its static value [-], shape (sample, axle).
+
+        Over the steps from the first axle on the bridge to the last off it.
+        """
+        return self._block("load_coefficients")
+
+    @property
+    def time_off_road(self) -> Array:
+        """How long each wheel was off the road in all [s], shape (sample, axle)."""
+        return self._block("time_off_road")
+
+    @property
+    def lift_offs(self) -> NDArray[np.int64]:
+        """How often each wheel left the road, shape (sample, axle)."""
+        axles = self.load_coefficients.shape[1]
+        return self._instants[:, self._instants.shape[1] - axles :].astype(np.int64)
+
+    @property
+    def body_accelerations(self) -> BodyAccelerations:
+        """Vertical accelerations of the bodies, by sample and body [m/s2]."""
+        return BodyAccelerations(self._block("accelerations"), self._block("vibrations"))
+
+    def impact_factors(self, quantity: Factor, mask: float | None = None) -> Array:
+        """Impact factors of every sample: dynamic extreme by static extreme.
+
+        Parameters
+        ----------
+        quantity : {"deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"}
+            Of what, as in `Run.impact_factors`.
+        mask : float, optional
+            Give none where the static value is at most this fraction of the largest along the
+            bridge; by default as the ensemble was told.
+
+        Returns
+        -------
+        ndarray, shape (sample, section)
+            One column for each section, support or axle; NaN where masked, and of samples that
+            failed.
+
+        Raises
+        ------
+        ValueError
+            If there are no such factors.
+        """
+        if quantity not in FACTORS:
+            near = suggestion(str(quantity), FACTORS)
+            raise ValueError(
+                f"quantity = {shown(quantity)}: must be one of {', '.join(FACTORS)}{near}"
+            )
+        name, sense = FACTORS[quantity]
+        least = self._recipe.conditions.mask if mask is None else masked(mask)
+        try:
+            extremes: SampleExtremes = getattr(self, name)
+        except AttributeError as error:
+            raise ValueError(f'quantity = "{quantity}": {error}') from None
+        return extremes.factors(sense, least)
+
+    def run(self, sample: int) -> Run:
+        """A sample by a crossing of its own, with all histories.
+
+        Parameters
+        ----------
+        sample : int
+            Its row, from 0; its number less `first`.
+
+        Returns
+        -------
+        Run
+            The same extremes, bit for bit; to rounding where the stiffness or the damping of the
+            bridge is varied, which is then another bridge.
+
+        Raises
+        ------
+        IndexError
+            If there is no such sample.
+        ValueError
+            If the stiffness varies of a bridge given by its flexibility or its modes.
+        RuntimeError
+            If the sample is one that failed.
+        """
+        row = count("sample", sample)
+        if row >= self.samples:
+            raise IndexError(f"sample = {row}: must be from 0 to below {self.samples}")
+        return self._recipe.run(row, self._core)
+
+    def histories(self, quantity: History, samples: Sequence[int]) -> Array:
+        """Histories of a response, by a crossing of its own for each of some samples.
+
+        Parameters
+        ----------
+        quantity : str
+            ``"deflection"``, ``"moment"``, ``"shear_left"``, ``"shear_right"``, ``"reactions"``,
+            ``"clamp_moments"`` or ``"axle_loads"``.
+        samples : sequence of int
+            Their rows, from 0.
+
+        Returns
+        -------
+        ndarray, shape (samples, time, section)
+            Values in SI units; times are `Run.time` of `run`.
+
+        Raises
+        ------
+        ValueError
+            If they differ in their number of instants, or would take too much memory.
+        """
+        if quantity not in get_args(History):
+            raise ValueError(
+                f"quantity = {shown(quantity)}: must be one of {', '.join(get_args(History))}"
+            )
+        rows = [count(f"samples[{i}]", each) for i, each in enumerate(samples)]
+        found: Array | None = None
+        for i, row in enumerate(rows):
+            values: Array = getattr(self.run(row), quantity)
+            if found is None:
+                size = len(rows) * values.nbytes
+                if size > MOST_BYTES:
+                    raise ValueError(
+                        f"samples = {len(rows)} samples: their histories would take "
+                        f"{size / 1e9:.1f} GB, more than {MOST_BYTES / 1e9:.1f}; ask for fewer"
+                    )
+                found = np.empty((len(rows), *values.shape))
+            if values.shape != found.shape[1:]:
+                raise ValueError(
+                    f"samples[{i}] = {row}: has {len(values)} instants, not {found.shape[1]} as "
+                    "those before it; ask for samples of different speeds or steps by themselves"
+                )
+            found[i] = values
+        return np.empty((0, 0, 0)) if found is None else found
+
+    def __repr__(self) -> str:
+        failed = f", {len(self.failures)} failed" if self.failures else ""
+        return (
+            f"Ensemble({self.samples} samples from {self.first} of seed {self.seed}{failed}, "
+            f"{len(self.sections)} sections, {', '.join(self.quantities)}; hash {self.hash})"
+        )
+
+
+def _cores(quantities: Sequence[str]) -> list[str]:
+    """The kinds of response that the core knows for these quantities."""
+    return [
+        name
+        for each in quantities
+        for name in (("shear_left", "shear_right") if each == "shear" else (each,))
+    ]

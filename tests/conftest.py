@@ -1,0 +1,61 @@
+"""What several files of tests need to compare an ensemble with crossings one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import spanwise as sw
+from spanwise.population import FACTORS
+
+Same: TypeAlias = Callable[[sw.Ensemble, int, sw.Run], None]
+
+
+def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
+    """All that both give is equal to the bit, or differs by rounding where sums are made anew."""
+    for name in (*ensemble.quantities, "axle_loads"):
+        of_all, alone = getattr(ensemble, name), run.envelope(name)  # type: ignore[arg-type]
+        axles = len(alone.x)
+        for side in ("max", "min"):
+            extremes, at_rest = getattr(alone, side), getattr(alone, f"static_{side}")
+            assert_array_equal(getattr(of_all, side)[sample, :axles], extremes.value, name)
+            assert_array_equal(getattr(of_all, f"{side}_time")[sample, :axles], extremes.time, name)
+            at = getattr(of_all, f"{side}_position")[sample, :axles]
+            assert_array_equal(at, extremes.position, name)
+            static = np.atleast_2d(getattr(of_all, f"static_{side}"))
+            own = static[sample if len(static) > 1 else 0]
+            assert_array_equal(own[:axles], at_rest.value, name)
+            assert np.isnan(getattr(of_all, side)[sample, axles:]).all()
+    for factor, (name, _) in FACTORS.items():
+        if name in (*ensemble.quantities, "axle_loads"):
+            expected = getattr(run.impact_factors, factor)
+            found = ensemble.impact_factors(factor)[sample, : len(expected)]
+            assert_array_equal(found, expected, factor)
+    axles = len(run.static_axle_loads)
+    assert_array_equal(ensemble.lift_offs[sample, :axles], run.off_road.count)
+    off = ensemble.time_off_road[sample, :axles]
+    np.testing.assert_allclose(off, run.off_road.total, rtol=1e-9, atol=1e-12)
+    accelerations = ensemble.body_accelerations.max[sample]
+    bodies = [body for vehicle in run.vehicles for body in vehicle.bodies]
+    for found, body in zip(accelerations, bodies, strict=False):
+        expected = np.abs(body.heave.acceleration).max()
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+    x = np.concatenate([vehicle.axle_positions for vehicle in run.vehicles], axis=1)
+    on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
+    first, last = np.flatnonzero(on)[[0, -1]]
+    there = slice(first, last + 1)
+    loads = run.axle_loads[there] / run.static_axle_loads
+    found = ensemble.load_coefficients[sample, :axles]
+    np.testing.assert_allclose(found, loads.std(axis=0), rtol=1e-7, atol=1e-9)
+    for found, body in zip(ensemble.body_accelerations.rms[sample], bodies, strict=False):
+        expected = np.sqrt((body.heave.acceleration[there] ** 2).mean())
+        np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-14)
+
+
+@pytest.fixture
+def same() -> Same:
+    return check_same
