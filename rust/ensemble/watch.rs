@@ -240,21 +240,19 @@ impl<L: Lane> Survey<'_, L> {
         let width = self.widths.all();
         let felt = c + a;
         let chunks = || self.steps.chunks(CHUNK * width).zip(self.chunks).enumerate();
-        // The glance.
+        // The glance, at the middle of every chunk.
         glanced.clear();
-        for seen in watched.iter() {
-            glanced.push([seen.max, seen.min]);
-        }
-        for (_, (steps, Chunk { influence, .. })) in chunks() {
-            let count = steps.len() / width;
-            let middle = count / 2;
-            let row = &steps[middle * width..][..felt];
-            for (r, (Row { factors, .. }, glanced)) in self.rows.iter().zip(glanced.iter_mut()).enumerate() {
+        for (r, (Row { factors, .. }, seen)) in self.rows.iter().zip(watched.iter()).enumerate() {
+            let (mut most, mut least) = (seen.max, seen.min);
+            for (_, (steps, Chunk { influence, .. })) in chunks() {
+                let count = steps.len() / width;
+                let middle = count / 2;
                 let influence = &influence[(r * count + middle) * a..][..a];
-                let value = value(&factors[..c], influence, row);
-                let [most, least] = *glanced;
-                *glanced = [value.larger(most), value.smaller(least)];
+                let value = value(&factors[..c], influence, &steps[middle * width..][..felt]);
+                most = value.larger(most);
+                least = value.smaller(least);
             }
+            glanced.push([most, least]);
         }
         // Largest and smallest of every number of a step over a chunk, in memory: it is chosen between them by address.
         ends.clear();
