@@ -10,8 +10,8 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use problems::ensemble::{headline, isas, run, samples};
-use spanwise::ensemble::BLOCK;
 use problems::{kishan_settings, kishan_vehicle};
+use spanwise::ensemble::BLOCK;
 
 /// What the gate takes for: this processor cannot.
 const ABSENT: u8 = 3;

@@ -290,7 +290,10 @@ impl Rows {
         let [row_a, row_b] = [a / WIDTH, b / WIDTH];
         let [i, j] = [a % WIDTH, b % WIDTH];
         (0..self.width).all(|k| self.factor(a, k) == self.factor(b, k))
-            && self.lines.chunks_exact(self.blocks()).all(|panel| (0..4).all(|p| panel[row_a][p][i] == panel[row_b][p][j]))
+            && self
+                .lines
+                .chunks_exact(self.blocks())
+                .all(|panel| (0..4).all(|p| panel[row_a][p][i] == panel[row_b][p][j]))
     }
 
     /// Adds, mode by mode, what a static load of one at a place adds to Ā_st; nothing where the rows do not need it.

@@ -224,8 +224,7 @@ impl Samples {
         let contacts = &vehicle.assembly().contacts;
         if vehicle.bodies().is_empty() {
             let shares = contacts.iter().enumerate();
-            let scaled: Vec<f64> =
-                shares.map(|(k, c)| c.share * factor(Parameter::BodyMass, axle + k)).collect();
+            let scaled: Vec<f64> = shares.map(|(k, c)| c.share * factor(Parameter::BodyMass, axle + k)).collect();
             let positions: Vec<f64> = contacts.iter().map(|c| c.position).collect();
             return match contacts[0].law {
                 ContactLaw::Force => Vehicle::force_train(&scaled, &positions),
