@@ -130,6 +130,16 @@ pub struct Ends<L> {
     pub latest: usize,
 }
 
+impl<L: Lane> Ends<L> {
+    /// How much of the next step lanes still go: of the last step a part, and then nothing.
+    #[inline(always)]
+    fn left(&self, step: usize) -> L {
+        let (now, next) = (L::splat(step as f64), L::splat(step as f64 + 1.0));
+        let next = L::select(next.less(self.last), L::splat(1.0), self.fraction);
+        L::select(now.less(self.last), next, L::splat(0.0))
+    }
+}
+
 /// Samples side by side.
 #[derive(Debug, Clone)]
 pub struct Group<'a, L> {
@@ -166,11 +176,7 @@ impl<L: Lane> Seen<L> {
     /// Nothing yet; but for a bridge that was at rest.
     pub fn nothing(rows: usize, axles: usize, bodies: usize, table: &Table) -> Self {
         let before = if table.first > 0 { Watched::rest() } else { Watched::nothing() };
-        Seen {
-            steps: vec![before; rows],
-            stops: vec![Watched::nothing(); rows],
-            ride: Ride::nothing(axles, bodies),
-        }
+        Seen { steps: vec![before; rows], stops: vec![Watched::nothing(); rows], ride: Ride::nothing(axles, bodies) }
     }
 }
 
@@ -202,8 +208,8 @@ struct Traveller<'g, 'a, L> {
     state: State<L>,
     static_loads: Vec<L>,
     kept: Kept<L>,
-    /// One in the lanes that have not ended yet, by step of the chunk.
-    active: Vec<L>,
+    /// How much of the step that follows the lanes go, by step of the chunk.
+    left: Vec<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
@@ -250,10 +256,8 @@ impl<L: Lane> Traveller<'_, '_, L> {
             finish(&mut self.kept.coordinates, before[0], way.rows.width());
             finish(&mut self.kept.loads, before[1], self.static_loads.len());
             finish(&mut self.kept.accelerations, before[2], self.group.bodies.len());
-            self.active.push(L::select(ended, zero, one));
-        } else {
-            self.active.push(one);
         }
+        self.left.push(if step + 1 < way.table.path.steps { one } else { self.group.ends.left(step) });
     }
 
     /// Whether everything is a finite number in lanes that have not ended.
@@ -284,7 +288,7 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
         }
         let static_loads = group.stepper.static_loads();
         let mut traveller =
-            Traveller { group, state, static_loads, kept: Kept::new(), active: Vec::with_capacity(CHUNK) };
+            Traveller { group, state, static_loads, kept: Kept::new(), left: Vec::with_capacity(CHUNK) };
         // Before the first step there is nothing: it stands for the one before.
         traveller.keep(0, way, table.first == 0, false);
         travellers.push(traveller);
@@ -303,7 +307,7 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
         };
         let to = end.min(from + CHUNK);
         for traveller in &mut travellers {
-            traveller.active.clear();
+            traveller.left.clear();
             if bridge && traveller.state.modes.is_empty() {
                 traveller.state.modes = vec![Coordinate::rest(); table.modes];
             }
@@ -333,9 +337,9 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
             if !traveller.sound(to - 1) {
                 return Err(Trouble::Failed(to - 1, None));
             }
-            let seen = &mut traveller.group.seen;
+            let Group { seen, ends, .. } = &mut *traveller.group;
             let kept = &traveller.kept;
-            seen.ride.take(kept, &traveller.static_loads, from, &traveller.active, counted);
+            seen.ride.take(kept, &traveller.static_loads, from, &traveller.left, counted);
             if bridge {
                 let coordinates = &kept.coordinates[width..];
                 let zeros;
@@ -362,7 +366,13 @@ pub fn march<L: Lane>(way: &Way<'_>, groups: &mut [Group<'_, L>], go_on: &dyn Fn
                         jumps: if rows.by_rates() { width / 2 } else { width },
                         weight: rows.weight(),
                     };
+                    let before = (stop.step > steps).then(|| seen.stops.clone());
                     watch_stop(&mut seen.stops, stop, first_stop + number, &look.rows, &states);
+                    // Lanes that end with the last step on the bridge see nothing of the next.
+                    let ended = ends.last.less(L::splat(stop.step as f64));
+                    for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
+                        *watched = watched.unless(ended, before);
+                    }
                 }
             }
             let bodies = traveller.group.bodies.len();
@@ -406,7 +416,8 @@ pub fn rest<L: Lane>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
             let influence = &influence[r * count * axles..(r + 1) * count * axles];
             watch(watched, &row.factors, influence, &coordinates[width..], &on_axles[..count * axles], axles, from);
         }
-        while let Some((number, stop)) = stops.next_if(|(_, stop)| stop.step < from + count) {
+        let to = if from + count > steps { usize::MAX } else { from + count };
+        while let Some((number, stop)) = stops.next_if(|(_, stop)| stop.step < to) {
             let mut there = Vec::with_capacity(width);
             combine(&stop.statics, loads, width, &mut there);
             let states = Between { coordinates: [&there; 2], loads: [loads; 2], jumps: width, weight: 1.0 };

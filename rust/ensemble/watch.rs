@@ -32,6 +32,17 @@ impl<L: Lane> Watched<L> {
         Watched { max: zero, max_at: zero, min: zero, min_at: zero }
     }
 
+    /// This, but for the lanes of a mask, which are as they were.
+    #[inline(always)]
+    pub fn unless(self, mask: L::Mask, before: Self) -> Self {
+        Watched {
+            max: L::select(mask, before.max, self.max),
+            max_at: L::select(mask, before.max_at, self.max_at),
+            min: L::select(mask, before.min, self.min),
+            min_at: L::select(mask, before.min_at, self.min_at),
+        }
+    }
+
     /// Takes in a value; of equal values the first counts.
     #[inline(always)]
     pub fn take(&mut self, value: L, at: L) {
@@ -108,17 +119,17 @@ impl<L: Lane> Ride<L> {
         }
     }
 
-    /// Takes in steps from number `from` on; `active` is one in lanes that still move, else zero, and `counted` one where
-    /// sums are to grow.
+    /// Takes in steps from number `from` on; `left` is how much of the step that follows lanes go, and `counted` one where
+    /// sums are to grow. Lanes that have ended go on as they were.
     #[inline(always)]
-    pub fn take(&mut self, kept: &Kept<L>, static_loads: &[L], from: usize, active: &[L], counted: L) {
+    pub fn take(&mut self, kept: &Kept<L>, static_loads: &[L], from: usize, left: &[L], counted: L) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let axles = self.loads.len();
         for (k, static_load) in static_loads.iter().enumerate() {
             let (mut watched, [mut sum, mut squares]) = (self.loads[k], self.sums[k]);
             let (mut aloft, mut lift_offs, mut grounded) = (self.aloft[k], self.lift_offs[k], self.grounded[k]);
             let mut at = L::splat(from as f64);
-            for (loads, active) in kept.loads[axles..].chunks_exact(axles).zip(active) {
+            for (loads, left) in kept.loads[axles..].chunks_exact(axles).zip(left) {
                 let load = loads[k];
                 watched.take(load, at);
                 let deviation = counted * (load - *static_load);
@@ -126,8 +137,8 @@ impl<L: Lane> Ride<L> {
                 squares = squares + deviation * deviation;
                 // Exactly zero is what a wheel off the road carries.
                 let now = L::select(load.less(zero) | zero.less(load), one, zero);
-                aloft = aloft + *active * (one - now);
-                lift_offs = lift_offs + *active * (grounded * (one - now));
+                aloft = aloft + *left * (one - now);
+                lift_offs = lift_offs + grounded * (one - now);
                 grounded = now;
                 at = at + one;
             }
