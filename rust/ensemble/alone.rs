@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
-use super::Study;
 use crate::analysis::Analysis;
 use crate::course::Passage;
 use crate::crossing::{ModalBridge, cross_all};
@@ -103,8 +103,9 @@ pub fn cross(
     let envelope = survey(&history, rows, &packed, responses, go_on)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
-    let chosen: Vec<(usize, f64)> =
-        (study.look.chosen.iter().zip(&study.look.deflections)).map(|(&r, &d)| (r, if d { stiffness } else { 1.0 })).collect();
+    let chosen: Vec<(usize, f64)> = (study.look.chosen.iter().zip(&study.look.deflections))
+        .map(|(&r, &d)| (r, if d { stiffness } else { 1.0 }))
+        .collect();
     record.numbers.fill(f64::NAN);
     record.instants.fill(0);
     let mut put = |column: Column, offset: usize, values: &mut dyn Iterator<Item = f64>| {
@@ -127,6 +128,12 @@ pub fn cross(
         put(Column::Positions, 2 * r + side * a, &mut extremes.iter().map(|e| e.position));
     }
     ride(&history, study.analysis.rows.mesh().length(), &passages, layout, &mut put, &mut record.instants[..]);
+    let bodies = passages.iter().map(|passage| passage.vehicle.bodies().len()).sum();
+    if !layout.is_finite(record.numbers, history.axles, bodies) {
+        // No step shows it, but sums of squares do.
+        let last = history.len() - 1;
+        return Err(Error::NotFinite { time: history.time[last], position: history.positions[last * history.axles] });
+    }
     Ok(())
 }
 

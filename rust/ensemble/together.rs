@@ -39,22 +39,22 @@ pub fn at_rest(study: &Study, kind: usize) -> Result<Vec<f64>, Error> {
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
-    let largest = row_of.iter().map(|&row| extremes(&table, &seen, row, 0)[0].0);
-    let smallest = row_of.iter().map(|&row| extremes(&table, &seen, row, 0)[1].0);
+    let largest = row_of.iter().map(|&row| extremes(&table, 1.0, &seen, row, 0)[0].0);
+    let smallest = row_of.iter().map(|&row| extremes(&table, 1.0, &seen, row, 0)[1].0);
     Ok(largest.chain(smallest).collect())
 }
 
-/// Largest and smallest of a row in one lane, each with its instant.
-fn extremes<L: Lane>(table: &Table, seen: &Seen<L>, row: usize, lane: usize) -> [(f64, u32); 2] {
+/// Largest and smallest of a row in one lane in steps of h [s], each with its instant.
+fn extremes<L: Lane>(table: &Table, h: f64, seen: &Seen<L>, row: usize, lane: usize) -> [(f64, u32); 2] {
     let pick = |of: fn(&Watched<L>) -> (L, L), sense: f64| {
         let number = |watched: &Watched<L>| {
             let (value, at) = of(watched);
             (value.get(lane), at.get(lane))
         };
         let ((at_step, step), (at_stop, stop)) = (number(&seen.steps[row]), number(&seen.stops[row]));
-        // At a stop and at a step alike, the earlier counts; a stop lies before the step that ends with it.
+        // At a stop and at a step alike, the earlier counts, and if they are one instant the stop.
         let better = sense * at_stop > sense * at_step;
-        let earlier = at_stop == at_step && table.stops[stop as usize].step as f64 <= step;
+        let earlier = at_stop == at_step && table.stops[stop as usize].when(h) <= step * h;
         if better || earlier { (at_stop + 0.0, instant_of_stop(stop as usize)) } else { (at_step + 0.0, step as u32) }
     };
     [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
@@ -155,21 +155,14 @@ impl<'a> Task<'a> {
     }
 
     /// Steppers of a sample: for its first instant, for the approach and for the bridge.
-    fn steppers<L: Lane>(
-        &self,
-        vehicle: &Vehicle,
-        omega: &[f64],
-        damping: &ModalDamping,
-        h: f64,
-    ) -> [Stepper<L>; 3] {
+    fn steppers<L: Lane>(&self, vehicle: &Vehicle, omega: &[f64], damping: &ModalDamping, h: f64) -> [Stepper<L>; 3] {
         let moving = [Moving { assembly: vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
         let crate::settings::Settings { beta, gravity, lift_off, .. } = self.study.settings;
         let none = (&[][..], &ModalDamping::Classical(Vec::new()));
         let there = (omega, damping);
         let started = if self.table.first > 0 { none } else { there };
-        [(started, 0.0), (none, h), (there, h)].map(|((omega, damping), h)| {
-            Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })
-        })
+        [(started, 0.0), (none, h), (there, h)]
+            .map(|((omega, damping), h)| Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off }))
     }
 
     fn ready(&self, sample: usize) -> Result<Ready, Error> {
@@ -241,9 +234,7 @@ impl<'a> Task<'a> {
             };
             let road: Vec<L> = match &study.own {
                 None => Vec::new(),
-                Some((synthesis, seed)) => {
-                    synthesis.coefficients(*seed, |lane| samples.first + sample_of(lane) as u64)
-                }
+                Some((synthesis, seed)) => synthesis.coefficients(*seed, |lane| samples.first + sample_of(lane) as u64),
             };
             let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
             let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
@@ -269,19 +260,23 @@ impl<'a> Task<'a> {
         }
         march(&way, &mut groups, go_on)?;
         for (number, (places, group)) in sound.chunks(L::SAMPLES).zip(&groups).enumerate() {
-            let at = |lane: usize| &ready[if one_for_all { 0 } else { number * L::SAMPLES + lane.min(places.len() - 1) }];
+            let at =
+                |lane: usize| &ready[if one_for_all { 0 } else { number * L::SAMPLES + lane.min(places.len() - 1) }];
             let at_rest = (self.layout.own_statics && varied).then(|| {
-                let loads: Vec<L> =
-                    (0..axles).map(|k| L::from_fn(|lane| at(lane).static_loads[k])).collect();
+                let loads: Vec<L> = (0..axles).map(|k| L::from_fn(|lane| at(lane).static_loads[k])).collect();
                 rest(&way, &loads)
             });
             for (lane, &place) in places.iter().enumerate() {
                 let (sample, record) = (members[place] as usize, &mut *records[place]);
                 let Ready { stiffness, static_loads, .. } = at(lane);
                 self.write(&group.seen, at_rest.as_ref(), lane, sample, (*stiffness, static_loads), record);
-                if !self.is_finite(record) {
-                    record.forget();
+                if !self.layout.is_finite(record.numbers, self.table.axles(), self.study.kinds[self.kind].bodies.len())
+                {
                     let step = group.ends.last.get(lane) as usize;
+                    if !closely {
+                        return Err(Trouble::Failed(step, None));
+                    }
+                    record.forget();
                     failures.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, None) });
                 }
             }
@@ -302,21 +297,21 @@ impl<'a> Task<'a> {
         let (layout, look) = (&self.layout, &self.study.look);
         let (responses, axles) = (layout.responses, static_loads.len());
         record.forget();
+        let h = self.step(sample);
         let start = layout.range(Column::Responses).start;
         for (place, (&row, &deflection)) in look.row_of.iter().zip(&look.deflections).enumerate() {
             let k = if deflection { stiffness } else { 1.0 };
-            for (side, (value, instant)) in extremes(self.table, seen, row, lane).into_iter().enumerate() {
+            for (side, (value, instant)) in extremes(self.table, h, seen, row, lane).into_iter().enumerate() {
                 record.numbers[start + side * responses + place] = value / k;
                 record.instants[side * responses + place] = instant;
             }
             if let Some(at_rest) = at_rest {
                 let start = layout.range(Column::Statics).start;
-                for (side, (value, _)) in extremes(self.table, at_rest, row, lane).into_iter().enumerate() {
+                for (side, (value, _)) in extremes(self.table, h, at_rest, row, lane).into_iter().enumerate() {
                     record.numbers[start + side * responses + place] = value / k;
                 }
             }
         }
-        let h = self.step(sample);
         let ride = &seen.ride;
         let count = (self.table.path.steps + 1 - self.table.first) as f64;
         let column = |column: Column| layout.range(column).start;
@@ -338,22 +333,5 @@ impl<'a> Task<'a> {
             record.numbers[column(Column::Accelerations) + b] = ride.accelerations[b].get(lane);
             record.numbers[column(Column::Vibrations) + b] = (ride.squares[b].get(lane) / count).sqrt();
         }
-    }
-
-    /// Whether all that this kind of event gives is a finite number.
-    fn is_finite(&self, record: &Record<'_>) -> bool {
-        let (axles, bodies) = (self.table.axles(), self.study.kinds[self.kind].bodies.len());
-        let finite = |column: Column, sides: usize, count: usize| {
-            let range = self.layout.range(column);
-            let width = range.len() / sides;
-            let numbers = &record.numbers[range];
-            width == 0 || numbers.chunks(width).all(|side| side[..count.min(width)].iter().all(|v| v.is_finite()))
-        };
-        finite(Column::Responses, 2, usize::MAX)
-            && finite(Column::Statics, 2, usize::MAX)
-            && finite(Column::Loads, 2, axles)
-            && finite(Column::LoadCoefficients, 1, axles)
-            && finite(Column::Accelerations, 1, bodies)
-            && finite(Column::Vibrations, 1, bodies)
     }
 }
