@@ -15,7 +15,7 @@ EXTENSION := $(VENV)/.extension.stamp
 PACKAGE   := Cargo.toml Cargo.lock pyproject.toml README.md
 RUST      := $(shell find rust -name '*.rs')
 
-.PHONY: build example test check bench headline bench-compare bench-record instructions instructions-record docs clean
+.PHONY: build example test soak check bench headline bench-compare bench-record instructions instructions-record docs clean
 .DEFAULT_GOAL := build
 
 build: $(EXTENSION)
@@ -37,6 +37,10 @@ example: $(EXTENSION)
 test: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked
 	$(PY) -m pytest
+
+# Random studies by the thousand, other ones each time.
+soak:
+	$(CARGO) test $(PROFILE) --locked --test ensemble_fuzz -- --ignored --nocapture
 
 # clippy runs in the dev profile: with the settings of maturin in the release
 # profile, the two would keep invalidating each other's build of PyO3.

@@ -195,6 +195,8 @@ impl Not for Truth {
 impl Lane for Counted {
     type Mask = Truth;
 
+    type Bits = u64;
+
     const SAMPLES: usize = 1;
 
     fn splat(value: f64) -> Self {
@@ -227,9 +229,21 @@ impl Lane for Counted {
         mask.0
     }
 
+    fn magnitude(self) -> Self {
+        Counted(self.0.abs())
+    }
+
     fn exp(self) -> Self {
         count(|counts| &mut counts.exponentials);
         Counted(self.0.exp())
+    }
+
+    fn to_bits(self) -> u64 {
+        self.0.to_bits()
+    }
+
+    fn from_bits(bits: u64) -> Self {
+        Counted(f64::from_bits(bits))
     }
 }
 

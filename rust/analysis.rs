@@ -7,6 +7,7 @@ use crate::damping::Damping;
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
 use crate::flexibility::Flexibility;
+use crate::float_mode::Standard;
 use crate::given::Given;
 use crate::history::History;
 use crate::influence::{Quantity, Responses};
@@ -50,6 +51,7 @@ impl Analysis {
         recovery: Recovery,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let sections = match sections {
             Some(sections) => checked_sections(sections, bridge.length())?,
             None => checked_sections(&bridge.default_sections(), bridge.length())?,
@@ -73,6 +75,7 @@ impl Analysis {
         sections: Option<&[f64]>,
         recovery: Recovery,
     ) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let (modes, lines) = given.modes(count)?;
         let (sections, chosen) = given.chosen(sections)?;
         let responses = given.responses().of_sections(&chosen);
@@ -105,6 +108,7 @@ impl Analysis {
         settings: &Settings,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Outcome, Error> {
+        let _mode = Standard::set();
         let history = cross_all(&self.model, passages, settings, go_on)?;
         let packed = self.rows.pack_history(&history);
         let envelope = survey(&history, &self.rows, &packed, &self.responses, go_on)?;
@@ -133,6 +137,7 @@ impl Analysis {
             );
             return Err(Error::input("sections", size, allowed));
         }
+        let _mode = Standard::set();
         self.rows.histories(&outcome.packed, range, go_on)
     }
 

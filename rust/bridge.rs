@@ -2,6 +2,7 @@
 
 use crate::along::{Along, Distribution, Sign};
 use crate::error::{Error, finite, positive};
+use crate::float_mode::Standard;
 
 /// Most stations a bridge may have: F is a dense matrix of this order, and its eigensolution grows with the cube.
 pub const MAX_STATIONS: usize = 2000;
@@ -142,6 +143,7 @@ impl Bridge {
     /// A bridge from all that can be said of one. That its hinges make no mechanism is left to
     /// [`crate::flexibility::Flexibility::new`].
     pub fn from_layout(layout: Layout) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let length = positive("length", layout.length)?;
         let supports = checked_supports(length, layout.supports)?;
         let hinges = checked_hinges(length, layout.hinges, &supports)?;
@@ -200,6 +202,7 @@ impl Bridge {
 
     /// Length [m] and supports of consecutive `spans` [m] with the given ends (`None` is free).
     pub fn consecutive(spans: &[f64], ends: [Option<Fixity>; 2]) -> Result<(f64, Vec<Support>), Error> {
+        let _mode = Standard::set();
         if spans.is_empty() {
             return Err(Error::input("spans", "[]", "needs at least one length in metres"));
         }

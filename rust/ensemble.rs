@@ -22,7 +22,7 @@ use std::sync::{Arc, Mutex};
 use rayon::prelude::*;
 
 use crate::analysis::Analysis;
-use crate::assembly::ContactLaw;
+use crate::assembly::{BuildUp, ContactLaw};
 use crate::course::{Course, Drive, Passage};
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
@@ -125,6 +125,7 @@ impl Study {
         advance: Option<f64>,
         quantities: &[Quantity],
     ) -> Result<Self, Error> {
+        let _mode = Standard::set();
         settings.check()?;
         if kinds.is_empty() || kinds.iter().any(Vec::is_empty) {
             return Err(Error::input("vehicles", "[]", "at least one vehicle must cross"));
@@ -177,7 +178,9 @@ impl Study {
             let course = Course::new(&passage, &self.settings, "", 0)?;
             course.check_road(&self.settings, length)?;
             course.check_contact(&self.analysis.model.shapes)?;
-            let path = course.path(&self.settings, length);
+            // Without a ramp the axles behind the first begin on the road too.
+            let behind = if self.settings.ramp > 0.0 { 0.0 } else { course.wheelbase() };
+            let path = course.path(&self.settings, length) + behind;
             if let Some((synthesis, _)) = self.own.as_ref().filter(|(own, _)| path > own.period()) {
                 let allowed = format!(
                     "it repeats after its period of {} m, and the path is longer; give a longer one",
@@ -194,6 +197,17 @@ impl Study {
         self.own.is_none() && self.settings.road.is_smooth()
     }
 
+    /// Whether any vehicle stands on more axles and springs than hold it, so that their stiffnesses share out its weight.
+    fn shares_by_stiffness(&self) -> bool {
+        self.kinds.iter().flat_map(|kind| &kind.passages).any(|passage| {
+            let (bodies, axles) = (passage.vehicle.bodies(), passage.vehicle.axles().len());
+            let couplings = || bodies.iter().flat_map(|body| &body.couplings);
+            let hinges = couplings().filter(|coupling| coupling.is_hinge()).count();
+            let springs = couplings().count() - hinges;
+            axles + springs + hinges > 2 * bodies.len()
+        })
+    }
+
     /// The vehicles of every kind.
     fn vehicles(&self) -> Vec<Vec<&Vehicle>> {
         self.kinds.iter().map(|kind| kind.passages.iter().map(|p| &p.vehicle).collect()).collect()
@@ -205,11 +219,15 @@ impl Study {
             let of = self.kinds.iter().map(|k| k.passages.iter().map(|p| count(&p.vehicle)).sum());
             of.max().unwrap_or(0)
         };
+        let springs = [Parameter::TyreStiffness, Parameter::SuspensionStiffness];
         Layout {
             responses: self.look.chosen.len(),
             axles: most(&|v| v.assembly().contacts.len()),
             bodies: most(&|v| v.bodies().len()),
-            own_statics: !self.shares || samples.varies_loads() || samples.varies(Parameter::BridgeStiffness),
+            own_statics: !self.shares
+                || samples.varies(Parameter::BodyMass)
+                || samples.varies(Parameter::BridgeStiffness)
+                || self.shares_by_stiffness() && springs.into_iter().any(|springs| samples.varies(springs)),
             own_times: !self.shares,
         }
     }
@@ -269,6 +287,13 @@ impl Study {
         let fastest: Vec<[f64; 3]> =
             (0..self.kinds.len()).map(|kind| model.fastest_parts(std::iter::once(self.vehicle(kind)))).collect();
         let plans: Vec<(usize, f64)> = (0..self.kinds.len()).map(|kind| self.plan(kind)).collect();
+        // Leaf springs are the stiffer, the more they rub.
+        let builds_up: Vec<bool> = (0..self.kinds.len())
+            .map(|kind| {
+                let frictions = &self.vehicle(kind).assembly().frictions;
+                frictions.iter().any(|element| matches!(element.friction.build_up, BuildUp::Leaf(_)))
+            })
+            .collect();
         let march = |sample: usize| {
             let kind = samples.kind(sample);
             let [bodies, axles] = [self.vehicle(kind).bodies().len(), self.vehicle(kind).assembly().contacts.len()];
@@ -277,7 +302,10 @@ impl Study {
                 all.fold(1.0, pick)
             };
             let tyres = extreme(Parameter::TyreStiffness, axles, f64::max);
-            let springs = tyres.max(extreme(Parameter::SuspensionStiffness, axles, f64::max));
+            let mut springs = tyres.max(extreme(Parameter::SuspensionStiffness, axles, f64::max));
+            if builds_up[kind] {
+                springs = springs.max(extreme(Parameter::FrictionLimit, axles, f64::max));
+            }
             let inertia =
                 extreme(Parameter::BodyMass, bodies, f64::min).min(extreme(Parameter::PitchInertia, bodies, f64::min));
             let [bridge, own, on_bridge] = fastest[kind];
@@ -314,6 +342,8 @@ impl Study {
 
     /// Runs all samples.
     pub fn run(&self, samples: &Samples, workers: &Workers, progress: &Progress) -> Result<Run, Error> {
+        // Here too, not only in the workers' threads: the geometry is laid out on this one.
+        let _mode = Standard::set();
         samples.check(&self.vehicles())?;
         self.check_factors(samples)?;
         let layout = self.layout(samples);
@@ -445,8 +475,7 @@ impl Run {
         match record::stop_or_step(instant) {
             Ok(stop) => {
                 let stop = &table.stops[stop];
-                let (before, after) = ((stop.step - 1) as f64 * h, stop.step as f64 * h);
-                (before + stop.fraction * (after - before), stop.position)
+                (stop.when(h), stop.position)
             }
             Err(step) => {
                 let (time, position) = (step as f64 * h, table.path.x(step, 0));

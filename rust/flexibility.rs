@@ -14,6 +14,7 @@ use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
 use crate::error::Error;
+use crate::float_mode::Standard;
 use crate::line::{Line, Mesh};
 
 /// Softest outer spring of a beam on more than two supports, as a fraction of EI/L³: below it rounding shows.
@@ -199,6 +200,7 @@ impl Flexibility {
     ///
     /// Fails if the hinges make a mechanism of the bridge.
     pub fn new(bridge: &Bridge, sections: &[f64]) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let mesh = Mesh::new(bridge.length(), bridge.points().chain(sections.iter().copied()));
         let middle = |panel: usize| mesh.nodes()[panel] + 0.5 * mesh.width(panel);
         let flexural_rigidity: Vec<f64> = (0..mesh.panels()).map(|p| bridge.flexural_rigidity_at(middle(p))).collect();

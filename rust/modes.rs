@@ -5,6 +5,7 @@ use faer::{Mat, Side};
 use crate::bridge::Bridge;
 use crate::error::Error;
 use crate::flexibility::{Action, Flexibility, Structure};
+use crate::float_mode::Standard;
 use crate::line::Line;
 
 /// Residual and orthogonality demanded of every solve, relative to the largest eigenvalue and to one.
@@ -28,6 +29,7 @@ pub struct Modes {
 impl Modes {
     /// The lowest `count` modes.
     pub fn new(bridge: &Bridge, flexibility: &Flexibility, count: usize) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let stations = bridge.stations();
         let n = stations.len();
         if count == 0 || count > n {

@@ -4,6 +4,7 @@
 
 use crate::assembly::{Assembly, BuildUp, ContactLaw, Friction, front_first, positions, prefix};
 use crate::error::{Error, finite, not_negative, positive};
+use crate::float_mode::Standard;
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;
@@ -129,6 +130,7 @@ impl Vehicle {
 
     /// Several bodies, each but the first coupled to earlier ones.
     pub fn of_bodies(bodies: Vec<Body>) -> Result<Self, Error> {
+        let _mode = Standard::set();
         if bodies.is_empty() {
             return Err(Error::input("bodies", "[]", "a vehicle needs at least one body"));
         }
@@ -164,6 +166,7 @@ impl Vehicle {
     }
 
     fn train(key: &str, values: &[f64], positions: &[f64], law: fn(f64) -> ContactLaw) -> Result<Self, Error> {
+        let _mode = Standard::set();
         if values.is_empty() {
             return Err(Error::input(key, "[]", "must have at least one value"));
         }

@@ -128,6 +128,12 @@ pub fn cross(
         put(Column::Positions, 2 * r + side * a, &mut extremes.iter().map(|e| e.position));
     }
     ride(&history, study.analysis.rows.mesh().length(), &passages, layout, &mut put, &mut record.instants[..]);
+    let bodies = passages.iter().map(|passage| passage.vehicle.bodies().len()).sum();
+    if !layout.is_finite(record.numbers, history.axles, bodies) {
+        // No step shows it, but sums of squares do.
+        let last = history.len() - 1;
+        return Err(Error::NotFinite { time: history.time[last], position: history.positions[last * history.axles] });
+    }
     Ok(())
 }
 

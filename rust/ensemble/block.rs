@@ -139,6 +139,16 @@ pub struct Ends<L> {
     pub latest: usize,
 }
 
+impl<L: Lane> Ends<L> {
+    /// How much of the next step lanes still go: of the last step a part, and then nothing.
+    #[inline(always)]
+    fn left(&self, step: usize) -> L {
+        let (now, next) = (L::splat(step as f64), L::splat(step as f64 + 1.0));
+        let next = L::select(next.less(self.last), L::splat(1.0), self.fraction);
+        L::select(now.less(self.last), next, L::splat(0.0))
+    }
+}
+
 /// The steppers of a group.
 #[derive(Debug, Clone)]
 pub struct Steppers<L> {
@@ -222,8 +232,6 @@ const KEPT: usize = 1 << 15;
 pub struct Scratch<L> {
     /// What recovery needs, by step: of the steps of a stretch, and of the one before.
     kept: Vec<L>,
-    /// One in the lanes that have not ended yet, by step of a stretch of the tail.
-    active: Vec<L>,
     glanced: Glance<L>,
     between: Vec<L>,
     chunks: Vec<Chunk>,
@@ -232,8 +240,7 @@ pub struct Scratch<L> {
 impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let (kept, active, glanced) = (Vec::new(), Vec::new(), Glance::new());
-        Scratch { kept, active, glanced, between: Vec::new(), chunks: Vec::new() }
+        Scratch { kept: Vec::new(), glanced: Glance::new(), between: Vec::new(), chunks: Vec::new() }
     }
 }
 
@@ -249,7 +256,6 @@ struct Traveller<'g, 'a, L> {
     state: State<L>,
     static_loads: Vec<L>,
     kept: &'g mut Vec<L>,
-    active: &'g mut Vec<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
@@ -290,7 +296,7 @@ impl<L: Lane> Traveller<'_, '_, L> {
     /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats its last row.
     #[inline(always)]
     fn end(&mut self, row: usize, step: usize, widths: &Widths) {
-        let (zero, one, now) = (L::splat(0.0), L::splat(1.0), L::splat(step as f64));
+        let (one, now) = (L::splat(1.0), L::splat(step as f64));
         let ends = &self.group.ends;
         let ended = ends.last.less(now);
         let ending = !(ended | now.less(ends.last));
@@ -302,7 +308,6 @@ impl<L: Lane> Traveller<'_, '_, L> {
             let cut = b + ends.fraction * (a - b);
             self.kept[i] = L::select(ended, b, L::select(short, cut, a));
         }
-        self.active.push(L::select(ended, zero, one));
     }
 
     /// Whether everything is a finite number in lanes that have not ended.
@@ -389,7 +394,7 @@ struct Looking<'s, L> {
     static_loads: &'s [L],
     /// Rows of its steps, and of the one before.
     kept: &'s [L],
-    active: Option<&'s [L]>,
+    ends: &'s Ends<L>,
     widths: Widths,
     place: Where,
     from: usize,
@@ -405,24 +410,32 @@ impl<L: Lane> Work for Looking<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Looking { seen, way, kept, widths, place, from, chunks, stop, .. } = self;
+        let Looking { seen, way, kept, ends, widths, place, from, chunks, stop, .. } = self;
         let (rows, width) = (&way.look.rows, widths.all());
         let steps = &kept[width..];
-        seen.ride.take(steps, &widths, self.static_loads, from, self.active, place == Where::Bridge);
+        let last = way.table.path.steps;
+        let left = |step: usize| if step + 1 < last { L::splat(1.0) } else { ends.left(step) };
+        seen.ride.take(steps, &widths, self.static_loads, from, left, place == Where::Bridge);
         match place {
-            Where::Approach => {}
+            Where::Approach => return,
             Where::Tail => watch_free(&mut seen.steps, rows, steps, &widths, from),
             Where::Bridge => {
                 Survey { rows, chunks, steps, widths, from }.take(&mut seen.steps, self.glanced);
-                let jumps = if way.rows.by_rates() { widths.coordinates / 2 } else { widths.coordinates };
-                let to = from + steps.len() / width;
-                while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < to) {
-                    let row = next.step - from;
-                    let sides = [&kept[row * width..][..width], &kept[(row + 1) * width..][..width]];
-                    watch_stop(&mut seen.stops, rows, next, *stop, sides, &widths, jumps, self.between);
-                    *stop += 1;
-                }
             }
+        }
+        let jumps = if way.rows.by_rates() { widths.coordinates / 2 } else { widths.coordinates };
+        let to = from + steps.len() / width;
+        while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < to) {
+            let row = next.step - from;
+            let sides = [&kept[row * width..][..width], &kept[(row + 1) * width..][..width]];
+            let before = (next.step > last).then(|| seen.stops.clone());
+            watch_stop(&mut seen.stops, rows, next, *stop, sides, &widths, jumps, self.between);
+            // Lanes that end with the last step on the bridge see nothing of the next.
+            let ended = ends.last.less(L::splat(next.step as f64));
+            for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
+                *watched = watched.unless(ended, before);
+            }
+            *stop += 1;
         }
     }
 }
@@ -444,13 +457,13 @@ pub fn march<L: Lane>(
     let longest = (KEPT / width / CHUNK).max(1) * CHUNK;
     let latest = group.ends.latest;
     let room = (longest.min(steps + 1 - table.first).max(CHUNK) + 1) * width;
-    let Scratch { kept, active, glanced, between, chunks: own_chunks } = scratch;
+    let Scratch { kept, glanced, between, chunks: own_chunks } = scratch;
     kept.resize(room.max(kept.len()), L::splat(0.0));
     let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
     let speed = group.geometry.speed;
     let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
     let static_loads = steppers.bridge.static_loads();
-    let mut traveller = Traveller { group, state, static_loads, kept, active };
+    let mut traveller = Traveller { group, state, static_loads, kept };
     // Before the first step there is nothing: it stands for the one before.
     traveller.keep(0, &widths, rows.by_rates(), table.first == 0);
     let mut stop = 0;
@@ -465,7 +478,6 @@ pub fn march<L: Lane>(
         };
         let to = end.min(from + most);
         let count = to - from;
-        traveller.active.clear();
         if place != Where::Approach && traveller.state.modes.is_empty() {
             traveller.state.modes = vec![Coordinate::rest(); table.modes];
         }
@@ -482,7 +494,7 @@ pub fn march<L: Lane>(
             way,
             static_loads: &traveller.static_loads,
             kept: &traveller.kept[..(count + 1) * width],
-            active: (place == Where::Tail).then_some(&traveller.active[..]),
+            ends: &traveller.group.ends,
             widths,
             place,
             from,

@@ -29,13 +29,16 @@ impl Look {
     /// At all responses of some quantities.
     pub fn new(rows: &Rows, responses: &Responses, quantities: &[Quantity]) -> Self {
         let deflections = responses.range(Quantity::Deflection);
+        let ends = [0, rows.mesh().panels()];
         let sections = responses.sections().len();
         let mut look = Look { chosen: Vec::new(), rows: Vec::new(), row_of: Vec::new(), deflections: Vec::new() };
         for &quantity in quantities {
-            for response in responses.range(quantity) {
+            for (section, response) in responses.range(quantity).enumerate() {
                 // But at stations, supports and ends, the shears left and right of a section differ only while an axle
-                // stands on it, which is not a matter of their rows.
-                let twin = (quantity == Quantity::ShearRight)
+                // stands on it, which is not a matter of their rows. An axle on a free end, whose rows are nothing, adds
+                // to the one inside.
+                let shear = quantity == Quantity::ShearRight && !ends.contains(&responses.sections()[section]);
+                let twin = shear
                     .then(|| look.rows.iter().position(|row| row.response == response - sections))
                     .flatten()
                     .filter(|&twin| rows.same(look.rows[twin].response, response));

@@ -72,6 +72,22 @@ impl Layout {
         start..start
     }
 
+    /// Whether all numbers that a sample of so many axles and bodies leaves are finite.
+    pub fn is_finite(&self, numbers: &[f64], axles: usize, bodies: usize) -> bool {
+        let finite = |column: Column, sides: usize, count: usize| {
+            let range = self.range(column);
+            let width = range.len() / sides;
+            let numbers = &numbers[range];
+            width == 0 || numbers.chunks(width).all(|side| side[..count.min(width)].iter().all(|v| v.is_finite()))
+        };
+        finite(Column::Responses, 2, usize::MAX)
+            && finite(Column::Statics, 2, usize::MAX)
+            && finite(Column::Loads, 2, axles)
+            && finite(Column::LoadCoefficients, 1, axles)
+            && finite(Column::Accelerations, 1, bodies)
+            && finite(Column::Vibrations, 1, bodies)
+    }
+
     /// Numbers of a sample.
     pub fn width(&self) -> usize {
         self.range(Column::Positions).end

@@ -63,6 +63,14 @@ pub struct Stop {
     pub position: f64,
 }
 
+impl Stop {
+    /// When, in steps of h [s].
+    pub fn when(&self, h: f64) -> f64 {
+        let (before, after) = ((self.step - 1) as f64 * h, self.step as f64 * h);
+        before + self.fraction * (after - before)
+    }
+}
+
 /// How axles move in equal steps of space.
 #[derive(Debug, Clone)]
 pub struct Advance {
@@ -263,7 +271,9 @@ impl Table {
         let mut stops = Vec::new();
         let mut ahead: Vec<usize> =
             (0..axles).map(|axle| places.partition_point(|place| place.1 <= path.x(0, axle))).collect();
-        for step in 1..=path.steps {
+        // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
+        let last_step = path.steps + usize::from(path.beyond > 0);
+        for step in 1..=last_step {
             for axle in 0..axles {
                 while let Some(&(node, at, section)) =
                     places.get(ahead[axle]).filter(|place| place.1 <= path.x(step, axle))

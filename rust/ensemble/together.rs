@@ -39,22 +39,22 @@ pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
-    let largest = row_of.iter().map(|&row| extremes(table, &seen, row, 0)[0].0);
-    let smallest = row_of.iter().map(|&row| extremes(table, &seen, row, 0)[1].0);
+    let largest = row_of.iter().map(|&row| extremes(table, 1.0, &seen, row, 0)[0].0);
+    let smallest = row_of.iter().map(|&row| extremes(table, 1.0, &seen, row, 0)[1].0);
     largest.chain(smallest).collect()
 }
 
-/// Largest and smallest of a row in one lane, each with its instant.
-fn extremes<L: Lane>(table: &Table, seen: &Seen<L>, row: usize, lane: usize) -> [(f64, u32); 2] {
+/// Largest and smallest of a row in one lane in steps of h [s], each with its instant.
+fn extremes<L: Lane>(table: &Table, h: f64, seen: &Seen<L>, row: usize, lane: usize) -> [(f64, u32); 2] {
     let pick = |of: fn(&Watched<L>) -> (L, L), sense: f64| {
         let number = |watched: &Watched<L>| {
             let (value, at) = of(watched);
             (value.get(lane), at.get(lane))
         };
         let ((at_step, step), (at_stop, stop)) = (number(&seen.steps[row]), number(&seen.stops[row]));
-        // At a stop and at a step alike, the earlier counts; a stop lies before the step that ends with it.
+        // At a stop and at a step alike, the earlier counts, and if they are one instant the stop.
         let better = sense * at_stop > sense * at_step;
-        let earlier = at_stop == at_step && table.stops[stop as usize].step as f64 <= step;
+        let earlier = at_stop == at_step && table.stops[stop as usize].when(h) <= step * h;
         if better || earlier { (at_stop + 0.0, instant_of_stop(stop as usize)) } else { (at_step + 0.0, step as u32) }
     };
     [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
@@ -175,32 +175,33 @@ impl Task<'_> {
             if places.is_empty() {
                 continue;
             }
-            // The lanes: first all samples side by side; if one of them fails, each in turn in all lanes, to show which.
-            // Others come to the same as side by side.
-            let together =
-                self.group(members, &places, &ready, false, &mut steppers, (&mut scratch, &mut roads), go_on);
+            // First all samples side by side; then each that has failed, or all where it is not known which, in all
+            // lanes alone, to see when. Others come to the same as side by side.
+            let own_scratch = (&mut scratch, &mut roads);
+            let together = self.group(members, &places, &ready, false, &mut steppers, own_scratch, go_on);
+            let mut again: Vec<usize> = (0..places.len()).collect();
             match together {
-                Ok(group) => {
-                    for (lane, &place) in places.iter().enumerate() {
-                        self.write(&group, lane, &ready, members[place], &mut records[place], failed);
-                    }
-                    continue;
-                }
+                Ok(group) => again.retain(|&lane| {
+                    let place = places[lane];
+                    !self.write(&group, lane, &ready, members[place], &mut records[place])
+                }),
                 Err(Trouble::Interrupted) => return Err(Error::Interrupted),
                 Err(Trouble::Failed(..)) => {}
             }
-            for (number, &place) in places.iter().enumerate() {
-                let own = if alike { &ready[..] } else { &ready[number..=number] };
-                let scratch = (&mut scratch, &mut roads);
-                match self.group(members, &[place], own, true, &mut None, scratch, go_on) {
-                    Ok(group) => self.write(&group, 0, own, members[place], &mut records[place], failed),
+            for lane in again {
+                let place = places[lane];
+                let sample = members[place] as usize;
+                let own = if alike { &ready[..] } else { &ready[lane..=lane] };
+                let own_scratch = (&mut scratch, &mut roads);
+                let (step, unsettled) = match self.group(members, &[place], own, true, &mut None, own_scratch, go_on) {
+                    Ok(group) if self.write(&group, 0, own, members[place], &mut records[place]) => continue,
+                    // No step shows it, but sums of squares do.
+                    Ok(group) => (group.last.get(0) as usize, None),
                     Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-                    Err(Trouble::Failed(step, unsettled)) => {
-                        records[place].forget();
-                        let sample = members[place] as usize;
-                        failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
-                    }
-                }
+                    Err(Trouble::Failed(step, unsettled)) => (step, unsettled),
+                };
+                records[place].forget();
+                failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
             }
         }
         Ok(())
@@ -258,7 +259,7 @@ impl Task<'_> {
         Ok(Marched { seen, at_rest, last: group.ends.last })
     }
 
-    /// Writes down what was seen of a sample; one with a number that is not finite has failed.
+    /// Writes down what was seen of a sample, and says whether all of it is finite.
     fn write<L: Lane>(
         &self,
         group: &Marched<L>,
@@ -266,16 +267,11 @@ impl Task<'_> {
         ready: &[Ready],
         member: u32,
         record: &mut Record<'_>,
-        failed: &mut Vec<Failure>,
-    ) {
-        let sample = member as usize;
+    ) -> bool {
         let Ready { stiffness, static_loads, .. } = &ready[lane.min(ready.len() - 1)];
-        self.write_numbers(group, lane, sample, (*stiffness, static_loads), record);
-        if !self.is_finite(record) {
-            record.forget();
-            let step = group.last.get(lane) as usize;
-            failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, None) });
-        }
+        self.write_numbers(group, lane, member as usize, (*stiffness, static_loads), record);
+        let bodies = self.study.kinds[self.kind].bodies.len();
+        self.layout.is_finite(record.numbers, self.table.axles(), bodies)
     }
 
     fn write_numbers<L: Lane>(
@@ -289,21 +285,21 @@ impl Task<'_> {
         let (layout, look) = (&self.layout, &self.study.look);
         let (responses, axles) = (layout.responses, static_loads.len());
         record.forget();
+        let h = self.step(sample);
         let start = layout.range(Column::Responses).start;
         for (place, (&row, &deflection)) in look.row_of.iter().zip(&look.deflections).enumerate() {
             let k = if deflection { stiffness } else { 1.0 };
-            for (side, (value, instant)) in extremes(self.table, seen, row, lane).into_iter().enumerate() {
+            for (side, (value, instant)) in extremes(self.table, h, seen, row, lane).into_iter().enumerate() {
                 record.numbers[start + side * responses + place] = value / k;
                 record.instants[side * responses + place] = instant;
             }
             if let Some(at_rest) = at_rest {
                 let start = layout.range(Column::Statics).start;
-                for (side, (value, _)) in extremes(self.table, at_rest, row, lane).into_iter().enumerate() {
+                for (side, (value, _)) in extremes(self.table, h, at_rest, row, lane).into_iter().enumerate() {
                     record.numbers[start + side * responses + place] = value / k;
                 }
             }
         }
-        let h = self.step(sample);
         let ride = &seen.ride;
         let count = (self.table.path.steps + 1 - self.table.first) as f64;
         let column = |column: Column| layout.range(column).start;
@@ -325,22 +321,5 @@ impl Task<'_> {
             record.numbers[column(Column::Accelerations) + b] = ride.accelerations[b].get(lane);
             record.numbers[column(Column::Vibrations) + b] = (ride.squares[b].get(lane) / count).sqrt();
         }
-    }
-
-    /// Whether all that this kind of event gives is a finite number.
-    fn is_finite(&self, record: &Record<'_>) -> bool {
-        let (axles, bodies) = (self.table.axles(), self.study.kinds[self.kind].bodies.len());
-        let finite = |column: Column, sides: usize, count: usize| {
-            let range = self.layout.range(column);
-            let width = range.len() / sides;
-            let numbers = &record.numbers[range];
-            width == 0 || numbers.chunks(width).all(|side| side[..count.min(width)].iter().all(|v| v.is_finite()))
-        };
-        finite(Column::Responses, 2, usize::MAX)
-            && finite(Column::Statics, 2, usize::MAX)
-            && finite(Column::Loads, 2, axles)
-            && finite(Column::LoadCoefficients, 1, axles)
-            && finite(Column::Accelerations, 1, bodies)
-            && finite(Column::Vibrations, 1, bodies)
     }
 }

@@ -37,6 +37,17 @@ impl<L: Lane> Watched<L> {
         Watched { max: zero, max_at: zero, min: zero, min_at: zero }
     }
 
+    /// This, but for the lanes of a mask, which are as they were.
+    #[inline(always)]
+    pub fn unless(self, mask: L::Mask, before: Self) -> Self {
+        Watched {
+            max: L::select(mask, before.max, self.max),
+            max_at: L::select(mask, before.max_at, self.max_at),
+            min: L::select(mask, before.min, self.min),
+            min_at: L::select(mask, before.min_at, self.min_at),
+        }
+    }
+
     /// Takes in a value; of equal values the first counts.
     #[inline(always)]
     pub fn take(&mut self, value: L, at: L) {
@@ -116,8 +127,8 @@ impl<L: Lane> Ride<L> {
         }
     }
 
-    /// Takes in the rows of steps from number `from` on; `active` is one in lanes that still move, else zero, step by
-    /// step, and sums grow where the steps are `counted`.
+    /// Takes in the rows of steps from number `from` on; `left` says how much of the step that follows a step the lanes
+    /// go, and sums grow where the steps are `counted`. Lanes that have ended go on as they were.
     #[inline(always)]
     pub fn take(
         &mut self,
@@ -125,7 +136,7 @@ impl<L: Lane> Ride<L> {
         widths: &Widths,
         static_loads: &[L],
         from: usize,
-        active: Option<&[L]>,
+        left: impl Fn(usize) -> L,
         counted: bool,
     ) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -144,10 +155,8 @@ impl<L: Lane> Ride<L> {
                 let off = !(load.less(zero) | zero.less(load));
                 if L::any(off) || L::any(grounded.less(one)) {
                     let now = L::select(off, zero, one);
-                    let active = active.map_or(one, |active| active[i]);
-                    // The time from the instant before counts if the wheel was off then.
-                    aloft = aloft + active * (one - grounded);
-                    lift_offs = lift_offs + active * (grounded * (one - now));
+                    aloft = aloft + left(from + i) * (one - now);
+                    lift_offs = lift_offs + grounded * (one - now);
                     grounded = now;
                 }
             }

@@ -1,5 +1,8 @@
 //! Several samples side by side, in plain arrays that the compiler keeps in vector registers.
 
+// Loops over the samples by their numbers, and no shorthand: so the compiler turns them into vectors.
+#![allow(clippy::assign_op_pattern, clippy::needless_range_loop)]
+
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::Lane;

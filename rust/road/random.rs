@@ -25,6 +25,7 @@ use super::spectrum::Spectrum;
 use super::spline::Spline;
 use super::turn::{sin_cos, sin_cos_of_words, sinc};
 use crate::error::{Error, positive};
+use crate::float_mode::Standard;
 use crate::lane::Lane;
 use crate::lane::bits::Bits;
 
@@ -63,6 +64,7 @@ impl Synthesis {
     /// For a spectrum as a contact patch feels it; without a `period` [m] the shortest that is at least 1000 m and holds
     /// the longest wave, with a whole number of grid points per shortest wave.
     pub fn new(spectrum: Spectrum, patch: Patch, period: Option<f64>) -> Result<Self, Error> {
+        let _mode = Standard::set();
         let [lowest, highest] = spectrum.band();
         let per_metre = POINTS_PER_WAVE * highest;
         // Not more points for a product that rounding lifts above a power of two.
@@ -109,6 +111,7 @@ impl Synthesis {
 
     /// The road of a seed and a sample number: a function of these alone.
     pub fn road(&self, seed: u64, sample: u64) -> Random {
+        let _mode = Standard::set();
         let spline = Spline::new(self.coefficients(seed, |_| sample), self.period);
         Random { spectrum: self.spectrum, patch: self.patch, seed, sample, spline }
     }

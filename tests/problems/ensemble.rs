@@ -1,25 +1,38 @@
-//! The headline case of the ensemble engine, and the few calls by which tests and benches reach that engine.
+//! The headline case of the ensemble engine, studies with all that it allows, and the few calls by which tests and
+//! benches reach that engine.
 
 use std::sync::Arc;
 
 use spanwise::analysis::Analysis;
+use spanwise::bridge::Bridge;
 use spanwise::course::Passage;
-use spanwise::ensemble::record::Record;
-use spanwise::ensemble::sample::Samples;
+use spanwise::crossing::{ModalBridge, cross_all};
+use spanwise::damping::Damping;
+use spanwise::ensemble::record::{Column, Record, Results};
+use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::together::Task;
 use spanwise::ensemble::{BLOCK, Progress, Run, Study, Workers};
+use spanwise::envelope::{Envelope, axle_loads};
+use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
+use spanwise::history::History;
 use spanwise::influence::Quantity;
 use spanwise::lane::Lane;
+use spanwise::modal::ModalDamping;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
+use spanwise::road::Road;
+use spanwise::road::feature::Feature;
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
 use spanwise::settings::Settings;
+use spanwise::survey::survey;
+use spanwise::vehicle::Vehicle;
 
-use super::{kishan_bridge, kishan_vehicle, undamped};
+use super::vehicles::{articulated, half_car, leaf};
+use super::{general_arrangements, kishan_bridge, kishan_vehicle, largest_magnitude, spread, undamped};
 
 /// Seed of the study.
 pub const SEED: u64 = 7;
@@ -39,7 +52,15 @@ pub const ALL: [Quantity; 6] = [
 
 /// Roads of class B as a contact patch of 0.24 m feels them, with a period of 128 m.
 pub fn synthesis() -> Arc<Synthesis> {
-    let spectrum = Spectrum::new(64e-6, 2.0, [0.01, 4.0]).unwrap();
+    roads(64e-6)
+}
+
+/// G_d(n₀) of a poor road, class D, on which wheels lift off [m³].
+pub const POOR: f64 = 1024e-6;
+
+/// Roads of some roughness [m³] as a contact patch of 0.24 m feels them, with a period of 128 m.
+pub fn roads(roughness: f64) -> Arc<Synthesis> {
+    let spectrum = Spectrum::new(roughness, 2.0, [0.01, 4.0]).unwrap();
     Arc::new(Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(128.0)).unwrap())
 }
 
@@ -50,6 +71,19 @@ pub fn kishan_analysis(sections: usize, recovery: Recovery) -> Arc<Analysis> {
     let at = |i: usize| bridge.length() * i as f64 / (sections - 1) as f64;
     let sections: Vec<f64> = (0..sections).map(at).collect();
     Arc::new(Analysis::new(&bridge, modes, &undamped(), Some(&sections), recovery, &mut || true).unwrap())
+}
+
+/// Any bridge in some modes, seen at some sections, the default ones if none are given.
+pub fn analysis_of(
+    bridge: &Bridge,
+    modes: usize,
+    damping: &Damping,
+    sections: &[f64],
+    recovery: Recovery,
+) -> Arc<Analysis> {
+    let modes = Modes::new(bridge, &Flexibility::new(bridge, &[]).unwrap(), modes).unwrap();
+    let sections = (!sections.is_empty()).then_some(sections);
+    Arc::new(Analysis::new(bridge, modes, damping, sections, recovery, &mut || true).unwrap())
 }
 
 /// A rough approach of 30 m.
@@ -64,6 +98,49 @@ pub fn headline() -> Study {
     Study::new(analysis, kinds, approach(), Some((synthesis(), SEED)), Some(0.022_86), &ALL).unwrap()
 }
 
+/// A bump of 20 mm with smooth sides of a metre, felt through a contact patch.
+pub fn bump(at: f64) -> Road {
+    Feature::plateau(at, 4.0, 0.02, 1.0, Patch::new(0.24).unwrap()).unwrap().into()
+}
+
+/// All at once: a bridge with hinges, springs and an EI that varies; two kinds of vehicle, one of two axles whose unsprung
+/// masses rub through leaf springs and one of two bodies on five axles; damped tyres; a bump on top of roads of class D;
+/// a tail.
+pub fn mixed() -> Study {
+    let (_, bridge) = general_arrangements().into_iter().find(|(name, _)| *name == "all at once").unwrap();
+    let analysis = analysis_of(&bridge, 5, &Damping::Ratios(vec![0.02]), &[], Recovery::ForceSummation);
+    let two = half_car([700.0, 1100.0], 1.0, 1.0, leaf(8e3, 1e-3));
+    let kinds = vec![vec![Passage::of(two)], vec![Passage::of(articulated(1.0, 1.0))]];
+    let road = Arc::new(bump(12.0));
+    let settings = Settings { approach: 20.0, ramp: 5.0, tail: 0.3, road, ..Settings::at_speed(SPEED) };
+    Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), Some(0.1), &ALL).unwrap()
+}
+
+/// Samples of [`mixed`]: kinds in turn, speeds of which the lowest halve the step, factors on every parameter.
+pub fn mixed_samples(first: u64, count: usize) -> Samples {
+    let numbers = first as usize..first as usize + count;
+    Samples {
+        first,
+        count,
+        kinds: numbers.clone().map(|i| u32::from(i % 3 == 1)).collect(),
+        speeds: numbers.clone().map(|i| 2.0 + 38.0 * spread(i)).collect(),
+        factors: Parameter::ALL
+            .into_iter()
+            .enumerate()
+            .map(|(p, parameter)| varied(parameter, p, numbers.clone()))
+            .collect(),
+    }
+}
+
+/// One factor for each sample, up to a fifth off one; of friction in the static state what part of the limit it is.
+pub fn varied(parameter: Parameter, salt: usize, numbers: std::ops::Range<usize>) -> Factors {
+    let value = |i: usize| match parameter {
+        Parameter::InitialFriction => 2.0 * spread(17 * i + salt) - 1.0,
+        _ => 0.8 + 0.4 * spread(17 * i + salt),
+    };
+    Factors { parameter, width: 1, values: numbers.map(value).collect() }
+}
+
 /// Samples of the headline case, all at its speed.
 pub fn samples(count: usize) -> Samples {
     Samples::at_speed(0, count, SPEED)
@@ -76,7 +153,169 @@ pub fn isas() -> Vec<(&'static str, Isa)> {
 
 /// Crosses with all samples.
 pub fn run(study: &Study, samples: &Samples, isa: Isa, threads: usize) -> Run {
-    study.run(samples, &Workers { isa, threads, chunk: BLOCK }, &Progress::default()).unwrap()
+    run_in_chunks(study, samples, isa, threads, BLOCK)
+}
+
+/// The same, with so many samples to a worker at a time.
+pub fn run_in_chunks(study: &Study, samples: &Samples, isa: Isa, threads: usize, chunk: usize) -> Run {
+    study.run(samples, &Workers { isa, threads, chunk }, &Progress::default()).unwrap()
+}
+
+/// Some samples as a run of their own; they must follow each other in number if roads are drawn for them.
+pub fn some(samples: &Samples, places: std::ops::Range<usize>) -> Samples {
+    let pick = |values: &[f64], width: usize| match values.len() == width {
+        true => values.to_vec(),
+        false => values[places.start * width..places.end * width].to_vec(),
+    };
+    Samples {
+        first: samples.first + places.start as u64,
+        count: places.len(),
+        kinds: samples.kinds.get(places.clone()).map_or(Vec::new(), <[u32]>::to_vec),
+        speeds: pick(&samples.speeds, 1),
+        factors: (samples.factors.iter()).map(|f| Factors { values: pick(&f.values, f.width), ..f.clone() }).collect(),
+    }
+}
+
+/// The numbers and instants of a sample.
+pub fn row(results: &Results, sample: usize) -> (&[f64], &[u32]) {
+    let (width, instants) = (results.layout.width(), results.layout.instants());
+    (&results.numbers[sample * width..][..width], &results.instants[sample * instants..][..instants])
+}
+
+/// A column of a sample.
+pub fn column(results: &Results, sample: usize, column: Column) -> &[f64] {
+    &row(results, sample).0[results.layout.range(column)]
+}
+
+/// Static loads worked out twice, relative to the largest response.
+const ROUNDING: f64 = 1e-11;
+
+/// Crossings of one sample by the engine for single ones.
+pub struct Alone {
+    pub vehicle: Vehicle,
+    pub history: History,
+    pub envelope: Envelope,
+    pub axle_loads: Envelope,
+    /// By what deflections are still to be divided.
+    pub stiffness: f64,
+}
+
+/// A sample as a single crossing, in steps of this way [m].
+pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> Result<Alone, Error> {
+    let speed = samples.speed(sample, 0);
+    let road = match &study.own {
+        Some((own, seed)) => {
+            let own = own.road(*seed, samples.first + sample as u64).into();
+            Arc::new(Road::sum([(*study.settings.road).clone(), own]))
+        }
+        None => Arc::clone(&study.settings.road),
+    };
+    let settings = Settings { road, step: Some(advance / speed), speed, ..study.settings.clone() };
+    let mut passage = study.kinds[samples.kind(sample)].passages[0].clone();
+    if !samples.factors.is_empty() {
+        passage.vehicle = samples.vehicle(&passage.vehicle, sample, [0, 0])?;
+    }
+    let vehicle = passage.vehicle.clone();
+    let Analysis { model, rows, responses, .. } = &*study.analysis;
+    let factor = |parameter: Parameter| samples.factor(parameter, sample, 0);
+    let [stiffness, damping] = [Parameter::BridgeStiffness, Parameter::BridgeDamping].map(factor);
+    if (stiffness, damping) == (None, None) {
+        let outcome = study.analysis.cross_all(&[passage], &settings, &mut || true)?;
+        let (history, envelope, axle_loads) = (outcome.history, outcome.envelope, outcome.axle_loads);
+        return Ok(Alone { vehicle, history, envelope, axle_loads, stiffness: 1.0 });
+    }
+    // Frequencies go with the root of the stiffness, ratios to critical damping are what they are; forces k Φᵀ K A and
+    // C Ȧ go with both.
+    let (stiffness, factor) = (stiffness.unwrap_or(1.0), damping.unwrap_or(1.0));
+    let ModalDamping::Classical(ratios) = &model.damping else { panic!("damping in modes") };
+    let damping = ModalDamping::Classical(ratios.iter().map(|ratio| ratio * factor).collect());
+    let root = stiffness.sqrt();
+    let omega = model.omega.iter().map(|omega| omega * root).collect();
+    let own = ModalBridge { omega, damping, ..model.clone() };
+    let mut history = cross_all(&own, &[passage], &settings, &mut || true)?;
+    history.a.iter_mut().for_each(|a| *a *= stiffness);
+    history.a_dot.iter_mut().for_each(|v| *v *= root * factor);
+    let envelope = survey(&history, rows, &rows.pack_history(&history), responses, &mut || true)?;
+    Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness })
+}
+
+/// Distances of the axles behind the first [m].
+fn behind(vehicle: &Vehicle) -> Vec<f64> {
+    let positions = vehicle.positions();
+    positions.iter().map(|x| positions[0] - x).collect()
+}
+
+/// Every sample against its own single crossing, to the bit: extremes of responses and axle loads, when and where, and
+/// static extremes.
+pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
+    let (results, layout) = (&run.results, run.results.layout);
+    assert!(results.failures.is_empty(), "{name}: {:?}", results.failures);
+    for sample in 0..samples.count {
+        let march = results.marches[sample] as usize;
+        let alone = match alone(study, samples, sample, run.tables[march].path.advance) {
+            Ok(alone) => alone,
+            Err(error) => panic!("{name}, sample {sample}: {error}"),
+        };
+        // Distances of axles are counted from the centre of mass: where that is moved, they are so but for rounding.
+        if behind(&alone.vehicle) != behind(study.vehicle(samples.kind(sample))) {
+            continue;
+        }
+        let (_, instants) = row(results, sample);
+        let same = |what: &str, at: usize, value: f64, expected: f64| {
+            assert_eq!(
+                value.to_bits(),
+                expected.to_bits(),
+                "{name}, sample {sample}, {what} {at}: {value}, {expected}"
+            );
+        };
+        let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
+        let values = column(results, sample, Column::Responses);
+        // Where the step of a kind as it is is halved for nobody, what all samples have alike is that of each.
+        let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
+        let statics = match shared {
+            None if run.refinements[march] == 0 => Some(&study.kinds[samples.kind(sample)].at_rest[..]),
+            own => own,
+        };
+        let largest = largest_magnitude(statics.unwrap_or_default());
+        for (place, &r) in study.look.chosen.iter().enumerate() {
+            let (dynamic, at_rest) = (&alone.envelope.dynamic, &alone.envelope.at_rest);
+            for (side, (extreme, at_rest)) in
+                [(dynamic.max[r], at_rest.max[r]), (dynamic.min[r], at_rest.min[r])].into_iter().enumerate()
+            {
+                let at = side * layout.responses + place;
+                let (time, position) = run.when(study, samples, sample, instants[at]);
+                // Cut short, the last step is rounded before or after the factors of the bridge.
+                let cut = alone.stiffness != 1.0 && study.settings.tail > 0.0;
+                if cut && alone.history.time.last() == Some(&time) {
+                    let off = (values[at] * shrink(place) / extreme.value - 1.0).abs();
+                    assert!(off <= 8.0 * f64::EPSILON, "{name}, sample {sample}, response {r}: off by {off:e}");
+                } else {
+                    same("response", r, values[at], extreme.value / shrink(place));
+                }
+                same("time of response", r, time, extreme.time);
+                same("place of response", r, position, extreme.position);
+                let Some(statics) = statics else { continue };
+                if shared.is_none() && !samples.factors.is_empty() {
+                    // Axle loads are those that other springs give, but for rounding.
+                    let off = (statics[at] - at_rest.value).abs() / largest;
+                    assert!(off <= ROUNDING, "{name}, sample {sample}, static response {r}: off by {off:e}");
+                } else {
+                    same("static response", r, statics[at], at_rest.value / shrink(place));
+                }
+            }
+        }
+        let loads = column(results, sample, Column::Loads);
+        for k in 0..alone.history.axles {
+            let sides = [alone.axle_loads.dynamic.max[k], alone.axle_loads.dynamic.min[k]];
+            for (side, extreme) in sides.into_iter().enumerate() {
+                let at = side * layout.axles + k;
+                same("load of axle", k, loads[at], extreme.value);
+                let (time, position) = run.when(study, samples, sample, instants[2 * layout.responses + at]);
+                same("time of load", k, time, extreme.time);
+                same("place of load", k, position, extreme.position);
+            }
+        }
+    }
 }
 
 /// One sample in a lane of any kind, on the calling thread: its numbers and instants.

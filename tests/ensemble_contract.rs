@@ -1,0 +1,191 @@
+//! The contract of an ensemble: a sample is a crossing, to the bit, however the work is done.
+
+mod problems;
+
+use std::sync::Arc;
+
+use problems::ensemble::*;
+use problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
+use problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
+use spanwise::assembly::Friction;
+use spanwise::bridge::Bridge;
+use spanwise::course::Passage;
+use spanwise::damping::Damping;
+use spanwise::ensemble::Study;
+use spanwise::ensemble::record::Column;
+use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::ensemble::simd::Isa;
+use spanwise::recovery::Recovery;
+use spanwise::settings::Settings;
+use spanwise::vehicle::Vehicle;
+
+/// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
+/// and some samples alone.
+fn check_ways(study: &Study, samples: &Samples, alone: &[usize]) {
+    let reference = run(study, samples, Isa::Scalar, 1).results;
+    assert!(reference.failures.is_empty(), "{:?}", reference.failures);
+    for isa in Isa::present() {
+        for threads in [1, 2, 7] {
+            for chunk in [1, 31, 32, 1000] {
+                let again = run_in_chunks(study, samples, isa, threads, chunk).results;
+                assert_eq!(again.hash(), reference.hash(), "{isa:?}, {threads} threads, chunks of {chunk}");
+            }
+        }
+        for &sample in alone {
+            let own = some(samples, sample..sample + 1);
+            assert_eq!(run(study, &own, isa, 1).results.digests[0], reference.digests[sample], "sample {sample} alone");
+        }
+    }
+}
+
+#[test]
+fn nothing_about_the_work_changes_a_bit() {
+    check_ways(&headline(), &Samples::at_speed(0, 70, 22.86), &[0, 17, 69]);
+}
+
+/// With everything that a study allows, and all of it at work.
+#[test]
+fn nothing_about_the_work_changes_a_bit_of_a_mixed_study() {
+    let (study, samples) = (mixed(), mixed_samples(5, 70));
+    let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
+    let (results, layout) = (&found.results, found.results.layout);
+    let lifted = |sample: usize| row(results, sample).1[2 * (layout.responses + layout.axles)..].iter().any(|&n| n > 0);
+    let lifting = (0..samples.count).filter(|&sample| lifted(sample)).count();
+    println!("{lifting} of {} lift off; steps halved {:?} times", samples.count, found.refinements);
+    assert!(lifting > 5, "{lifting}");
+    // Both kinds with and without halved steps.
+    assert!(found.refinements.len() >= 4, "{:?}", found.refinements);
+    check_ways(&study, &samples, &[0, 1, 2, 33, 69]);
+    check_alone(&study, &samples, &found, "mixed");
+}
+
+#[test]
+fn a_sample_is_a_crossing() {
+    let study = headline();
+    let speeds: Vec<f64> = (0..9).map(|i| 15.0 + 3.0 * f64::from(i)).collect();
+    let samples = Samples { speeds, ..Samples::at_speed(100, 9, 1.0) };
+    check_alone(&study, &samples, &run(&study, &samples, Isa::Scalar, 1), "headline");
+}
+
+/// One of each sort: massless axles that rub and slide, unsprung masses with all kinds of friction, damped tyres, two
+/// bodies, forces, masses in rigid contact.
+fn vehicles() -> Vec<(&'static str, Vehicle)> {
+    vec![
+        ("massless axles that rub", kishan_vehicle()),
+        ("leaf springs", half_car([700.0, 1100.0], 1.0, 0.0, leaf(8e3, 1e-3))),
+        ("massless axles on leaf springs, damped tyres", half_car([0.0; 2], 1.0, 1.0, leaf(8e3, 1e-3))),
+        ("elastic sticks", half_car([700.0, 1100.0], 0.5, 1.0, elastic(5e3, 2e7))),
+        ("rigid friction", half_car([700.0, 1100.0], 1.0, 0.0, Friction::coulomb(6e3))),
+        ("one axle with mass, one without", half_car([700.0, 0.0], 1.0, 1.0, Friction::NONE)),
+        ("two bodies", articulated(1.0, 1.0)),
+        ("two bodies, undamped tyres", hs20(1.0)),
+        ("forces", Vehicle::force_train(&[9e4, 1.2e5, 1.1e5], &[0.0, -3.5, -5.0]).unwrap()),
+        ("masses", Vehicle::moving_masses(&[3e3, 4e3, 2e3], &[0.0, -2.5, -6.0]).unwrap()),
+    ]
+}
+
+fn is_rigid(vehicle: &Vehicle) -> bool {
+    vehicle.bodies().is_empty() && vehicle.mass() > 0.0
+}
+
+const RECOVERIES: [Recovery; 3] = [Recovery::ForceSummation, Recovery::ForceSummationByRates, Recovery::Superposition];
+
+/// One study of nine samples on roads of class D, some with a tail and some without an approach.
+fn check_study(name: &str, bridge: &Bridge, vehicle: &Vehicle, recovery: Recovery, variant: usize) {
+    let damping = Damping::Ratios(vec![0.015]);
+    let modes = bridge.stations().len().min(4);
+    let analysis = analysis_of(bridge, modes, &damping, &[], recovery);
+    let approach = if variant % 2 == 0 { 0.0 } else { 11.0 };
+    let ramp = if variant % 4 == 3 { 4.0 } else { 0.0 };
+    let tail = [0.0, 0.13, 0.4][variant % 3];
+    let road = if variant % 5 == 4 { Arc::new(bump(0.3 * bridge.length())) } else { Settings::at_speed(1.0).road };
+    let own = (variant % 7 != 6).then(|| (roads(POOR), 3));
+    let settings = Settings { approach, ramp, tail, road, ..Settings::at_speed(SPEED) };
+    let kinds = vec![vec![Passage::of(vehicle.clone())]];
+    let study = Study::new(analysis, kinds, settings, own, (variant % 2 == 1).then_some(0.07), &ALL).unwrap();
+    let speeds = (0..9).map(|i| 8.0 + 30.0 * spread(variant + i)).collect();
+    let samples = Samples { speeds, ..Samples::at_speed(variant as u64, 9, 1.0) };
+    let isa = Isa::present().last().unwrap();
+    check_alone(&study, &samples, &run(&study, &samples, isa, 2), name);
+}
+
+/// Ends free, clamped, sprung; hinges; sections at ends, supports and stations; every recovery.
+#[test]
+fn a_sample_is_a_crossing_on_every_bridge() {
+    let vehicles = vehicles();
+    let mut variant = 0;
+    for (bridge_name, bridge) in all_arrangements() {
+        for recovery in RECOVERIES {
+            let (name, vehicle) = &vehicles[(variant * 3 + variant / 10) % vehicles.len()];
+            variant += 1;
+            if is_rigid(vehicle) && !bridge.hinges().is_empty() {
+                continue;
+            }
+            check_study(&format!("{bridge_name}, {name}, {recovery:?}"), &bridge, vehicle, recovery, variant);
+        }
+    }
+}
+
+#[test]
+fn a_sample_is_a_crossing_by_every_vehicle() {
+    for (variant, (name, vehicle)) in vehicles().iter().enumerate() {
+        for (more, recovery) in RECOVERIES.into_iter().enumerate() {
+            check_study(&format!("{name}, {recovery:?}"), &kishan_bridge(), vehicle, recovery, variant + more);
+        }
+    }
+}
+
+/// Factors of each axle and body its own, and on the bridge, by every recovery.
+#[test]
+fn a_sample_with_its_own_factors_is_a_crossing() {
+    for recovery in RECOVERIES {
+        let damping = Damping::Rayleigh { mass: 0.4, stiffness: 5e-4 };
+        let analysis = analysis_of(&problems::two_spans(4), 4, &damping, &[], recovery);
+        let kinds = vec![vec![Passage::of(articulated(1.0, 1.0))]];
+        let settings = Settings { approach: 8.0, tail: 0.2, ..Settings::at_speed(SPEED) };
+        let study = Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), None, &ALL).unwrap();
+        let count = 11;
+        let factors = Parameter::ALL.into_iter().enumerate().filter_map(|(p, parameter)| {
+            let width = match parameter {
+                Parameter::BodyMass | Parameter::PitchInertia => 2,
+                Parameter::BridgeStiffness | Parameter::BridgeDamping => 1,
+                // Without friction there is none to vary.
+                Parameter::FrictionLimit | Parameter::InitialFriction => return None,
+                _ => 5,
+            };
+            let values = (0..count * width).map(|i| 0.8 + 0.4 * spread(13 * i + p)).collect();
+            Some(Factors { parameter, width, values })
+        });
+        let speeds = (0..count).map(|i| 10.0 + 2.0 * i as f64).collect();
+        let samples = Samples { factors: factors.collect(), speeds, ..Samples::at_speed(40, count, 1.0) };
+        check_alone(&study, &samples, &run(&study, &samples, Isa::chosen().unwrap(), 2), &format!("{recovery:?}"));
+    }
+}
+
+/// Nothing of a study of vehicles that go their own ways depends on the work either.
+#[test]
+fn several_vehicles_are_a_crossing_each() {
+    let analysis = kishan_analysis(9, Recovery::ForceSummation);
+    let second = Passage { entry: 0.8, ..Passage::of(hs20(1.0)) };
+    let kinds = vec![vec![Passage::of(kishan_vehicle()), second], vec![Passage::of(kishan_vehicle())]];
+    let settings = Settings { tail: 0.2, ..approach() };
+    let study = Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), None, &ALL).unwrap();
+    assert!(!study.shares);
+    let kinds = (0..10).map(|i| i % 2).collect();
+    let samples = Samples { kinds, ..Samples::at_speed(3, 10, SPEED) };
+    check_ways(&study, &samples, &[0, 1, 9]);
+    // The second kind alone shares its geometry: the extremes are the same.
+    let found = run(&study, &samples, Isa::Scalar, 2);
+    let one = alone(&study, &samples, 1, found_advance(&study)).unwrap();
+    let values = column(&found.results, 1, Column::Responses);
+    for (place, &r) in study.look.chosen.iter().enumerate() {
+        assert_eq!(values[place], one.envelope.dynamic.max[r].value);
+    }
+}
+
+/// The way per step that a single crossing at the speed of the study chooses [m].
+fn found_advance(study: &Study) -> f64 {
+    let settings = Settings { road: Arc::new(synthesis().road(SEED, 4).into()), ..study.settings.clone() };
+    let outcome = study.analysis.cross(&kishan_vehicle(), &settings, &mut || true).unwrap();
+    outcome.history.step * settings.speed
+}

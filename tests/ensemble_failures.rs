@@ -1,0 +1,140 @@
+//! Samples that fail: marked with place, step and cause, and nothing to their neighbours.
+
+mod problems;
+
+use problems::ensemble::*;
+use problems::kishan_vehicle;
+use problems::vehicles::{half_car, leaf};
+use spanwise::course::Passage;
+use spanwise::ensemble::record::{Failure, Results};
+use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::ensemble::simd::Isa;
+use spanwise::ensemble::{Run, Study};
+use spanwise::error::Error;
+use spanwise::recovery::Recovery;
+use spanwise::settings::Settings;
+use spanwise::vehicle::Vehicle;
+
+const COUNT: usize = 41;
+
+/// Places that are to fail: at the ends, in the same lanes and neighbouring ones, and not in every block of samples.
+const BAD: [usize; 5] = [0, 9, 10, 17, 40];
+
+fn study(vehicle: Vehicle, tail: f64) -> Study {
+    let settings = Settings { approach: 6.0, tail, ..Settings::at_speed(1.0) };
+    let kinds = vec![vec![Passage::of(vehicle)]];
+    let analysis = kishan_analysis(9, Recovery::ForceSummation);
+    Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap()
+}
+
+/// Speeds all their own, and a factor that is `bad` where samples are to fail and `good` elsewhere.
+fn samples(parameter: Parameter, width: usize, good: f64, bad: f64) -> Samples {
+    let values = (0..COUNT * width).map(|i| if BAD.contains(&(i / width)) { bad } else { good });
+    let factors = vec![Factors { parameter, width, values: values.collect() }];
+    let speeds = (0..COUNT).map(|i| 18.0 + 17.0 * problems::spread(i)).collect();
+    Samples { factors, speeds, ..Samples::at_speed(11, COUNT, 1.0) }
+}
+
+/// Runs samples of which some fail, in every way; the others must not feel it.
+fn check(study: &Study, bad: &Samples, good: &Samples) -> Vec<Failure> {
+    let untouched = run(study, good, Isa::Scalar, 1).results;
+    assert!(untouched.failures.is_empty(), "{:?}", untouched.failures);
+    let reference = run(study, bad, Isa::Scalar, 1).results;
+    let failed: Vec<usize> = reference.failures.iter().map(|failure| failure.sample).collect();
+    assert_eq!(failed, BAD);
+    for isa in Isa::present() {
+        for (threads, chunk) in [(1, 32), (2, 7), (2, 1)] {
+            let Run { results, .. } = run_in_chunks(study, bad, isa, threads, chunk);
+            assert_eq!(results.hash(), reference.hash());
+            assert_eq!(results.failures, reference.failures, "{isa:?}, chunks of {chunk}");
+            for sample in 0..COUNT {
+                let (numbers, instants) = row(&results, sample);
+                if BAD.contains(&sample) {
+                    assert!(numbers.iter().all(|v| v.is_nan()) && instants.iter().all(|&i| i == 0), "sample {sample}");
+                } else {
+                    assert_eq!(results.digests[sample], untouched.digests[sample], "sample {sample}");
+                    assert!(is_finite(&results, sample), "sample {sample}");
+                }
+            }
+        }
+        // Alone it fails in the same step for the same cause.
+        for (place, &sample) in BAD.iter().enumerate() {
+            let own = run(study, &some(bad, sample..sample + 1), isa, 1).results;
+            let [failure] = &own.failures[..] else { panic!("sample {sample} does not fail alone") };
+            let expected = &reference.failures[place];
+            assert_eq!((failure.step, &failure.cause), (expected.step, &expected.cause), "sample {sample}");
+        }
+    }
+    reference.failures
+}
+
+fn is_finite(results: &Results, sample: usize) -> bool {
+    row(results, sample).0.iter().all(|v| v.is_finite())
+}
+
+/// A leaf spring that is stiffened without rubbing more would give out energy: there is no such vehicle.
+#[test]
+fn a_vehicle_that_cannot_be() {
+    // 8 kN within 1.9 mm beside 1e6 N/m and less.
+    let study = study(half_car([700.0, 1100.0], 1.0, 0.0, leaf(8e3, 1.9e-3)), 0.1);
+    let of = |bad: f64| samples(Parameter::SuspensionStiffness, 2, 1.0, bad);
+    for failure in check(&study, &of(6.0), &of(1.0)) {
+        assert_eq!(failure.step, None);
+        let message = failure.cause.to_string();
+        assert!(failure.cause.is_input() && message.contains("leaf_decay"), "{message}");
+    }
+}
+
+/// Where it stops being finite amid the crossing, the step is told.
+#[test]
+fn a_step_that_is_not_finite() {
+    let study = study(Vehicle::moving_masses(&[500.0], &[0.0]).unwrap(), 0.3);
+    let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
+    let advance = run(&study, &of(1.0), Isa::Scalar, 1).tables[0].path.advance;
+    for failure in check(&study, &of(1e304), &of(1.0)) {
+        let Error::NotFinite { time, position } = failure.cause else { panic!("{:?}", failure.cause) };
+        let step = failure.step.unwrap();
+        let speed = 18.0 + 17.0 * problems::spread(failure.sample);
+        println!("sample {}: step {step}, {time} s, {position} m", failure.sample);
+        assert!((time - step as f64 * advance / speed).abs() <= 1e-12, "{time} s");
+        assert!((position - (step.saturating_sub(1) as f64 * advance - 6.0)).abs() <= 1e-12, "{position} m");
+    }
+}
+
+/// Heavy masses that ride side by side on a light bridge accelerate each other.
+#[test]
+fn forces_that_do_not_settle() {
+    let masses = Vehicle::moving_masses(&[500.0; 4], &[0.0, -0.01, -0.02, -0.03]).unwrap();
+    let study = study(masses, 0.0);
+    let of = |bad: f64| samples(Parameter::BodyMass, 4, 1.0, bad);
+    for failure in check(&study, &of(1e6), &of(1.0)) {
+        assert!(matches!(failure.cause, Error::NoConvergence { what: "contact forces", .. }), "{:?}", failure.cause);
+        assert!(failure.step.is_some());
+    }
+}
+
+/// On a road that nothing stands.
+#[test]
+fn what_overflows_is_marked() {
+    let settings = Settings { approach: 6.0, ..Settings::at_speed(SPEED) };
+    for shares in [true, false] {
+        let passage = Passage { lane: 0, entry: if shares { 0.0 } else { 0.25 }, ..Passage::of(kishan_vehicle()) };
+        let analysis = kishan_analysis(9, Recovery::ForceSummation);
+        let own = Some((roads(1e306), SEED));
+        let advance = shares.then_some(0.1);
+        let study = Study::new(analysis, vec![vec![passage]], settings.clone(), own, advance, &ALL).unwrap();
+        assert_eq!(study.shares, shares);
+        let samples = Samples::at_speed(0, 19, SPEED);
+        for isa in Isa::present() {
+            let results = run(&study, &samples, isa, 2).results;
+            // Marked, or whole.
+            let failed = |sample: usize| results.failures.iter().any(|failure| failure.sample == sample);
+            for sample in 0..19 {
+                let (numbers, _) = row(&results, sample);
+                let whole = is_finite(&results, sample);
+                assert!(if failed(sample) { numbers.iter().all(|v| v.is_nan()) } else { whole }, "sample {sample}");
+            }
+            assert!(results.failures.len() > if shares { 18 } else { 0 }, "{}", results.failures.len());
+        }
+    }
+}
