@@ -114,7 +114,7 @@ def test_one_factor_for_all_parts(vehicle: sw.Vehicle, name: str, same: Same) ->
 
 def test_factors_by_axle_and_body(same: Same) -> None:
     rng = np.random.default_rng(5)
-    factors = {
+    factors: dict[str, Any] = {
         "tyre_stiffness": rng.uniform(0.8, 1.2, (3, 2)),
         "suspension_stiffness": rng.uniform(0.8, 1.2, (3, 2)),
         "friction_limit": rng.uniform(0.5, 1.5, (3, 2)),
@@ -134,7 +134,7 @@ def test_factors_by_axle_and_body(same: Same) -> None:
                 name: np.broadcast_to(v.T, (2, 3))[k, sample]
                 for name, v in factors.items()
                 if isinstance(v, np.ndarray)
-            }  # noqa: E501
+            }
             assert axle.tyre_stiffness == nominal.tyre_stiffness * part["tyre_stiffness"]
             limit = nominal.friction_limit * part["friction_limit"]
             assert axle.friction_limit == limit
@@ -175,7 +175,7 @@ def test_trains_vary_in_their_loads(same: Same) -> None:
 
 
 def test_values_are_factors_of_what_there_is() -> None:
-    values = {
+    values: dict[str, Any] = {
         "body_mass": [20e3, 25e3],
         "tyre_stiffness": np.array([[6e6, 7e6], [8e6, 9e6]]),
         "initial_friction": np.array([[1e4, -2e4], [0.0, 5e3]]),
@@ -219,7 +219,7 @@ def test_values_of_a_fleet() -> None:
 
 def test_bridge_stiffness() -> None:
     stiffness = np.array([1.0, 1.3, 0.8])
-    supports = [(0.0, "pinned"), sw.Support(at=18.288, vertical=2e8), (36.576, "pinned")]
+    supports: list[Any] = [(0.0, "pinned"), sw.Support(at=18.288, vertical=2e8), (36.576, "pinned")]
     for more in ({}, {"damping": 0.03}, {"recovery": "superposition"}):
         for bridge in (
             BRIDGE,
@@ -242,8 +242,8 @@ def test_bridge_stiffness() -> None:
     check_close(found, 1, run)
     at = float(BRIDGE.nodes[3])
     modes = sw.Bridge.from_modes(
-        path=BRIDGE.nodes,
-        frequencies=BRIDGE.modes(3).frequencies,
+        path=BRIDGE.nodes.tolist(),
+        frequencies=BRIDGE.modes(3).frequencies.tolist(),
         shapes=BRIDGE.mode_shapes(3, BRIDGE.nodes),
         sections=[at],
         influence={"deflection": BRIDGE.deflections(BRIDGE.nodes, [at]).T},
@@ -257,18 +257,19 @@ def test_bridge_stiffness() -> None:
 def test_bridge_damping() -> None:
     damping = np.array([1.0, 2.0, 0.5])
     matrix = 2e3 * np.eye(6)
-    for given in (
+    given: dict[str, Any]
+    for more in (
         {"damping": 0.02},
         {"damping": [0.01, 0.02, 0.03], "recovery": "superposition"},
         {"damping": matrix},
         {"damping": sw.Rayleigh(0.3, 1e-4), "recovery": "force-summation-by-rates"},
     ):
-        given = {**GIVEN, **given}
+        given = {**GIVEN, **more}
         found = sw.ensemble(BRIDGE, TRUCK, samples=3, factors={"bridge_damping": damping}, **given)
         for sample in range(3):
             check_close(found, sample, found.run(sample))
-    given["damping"] = sw.Rayleigh(0.6, 2e-4)
-    given["road"] = sw.ISO8608("B", period=160.0, sample=1)
+    road = sw.ISO8608("B", period=160.0, sample=1)
+    given = {**given, "damping": sw.Rayleigh(0.6, 2e-4), "road": road}
     step = found.run(1).settings["step"]
     run = sw.cross(BRIDGE, TRUCK, **given, step=step)  # type: ignore[arg-type]
     check_close(found, 1, run)
