@@ -184,6 +184,12 @@ impl<L: Lane> Contact<L> {
         }
     }
 
+    /// What side by side samples must have in common: in these their steps take other ways, not only other numbers.
+    pub fn ways(&self) -> [bool; 4] {
+        let has = |of: fn(&Suspension<L>) -> bool| self.suspension.as_ref().is_some_and(of);
+        [self.weights.plain, self.suspension.is_some(), has(|s| s.trapezoidal), has(|s| s.damped)]
+    }
+
     /// The suspension in the static state.
     #[inline(always)]
     pub fn at_rest(&self) -> Stroke<L> {

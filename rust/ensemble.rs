@@ -348,6 +348,7 @@ impl Study {
         self.check_factors(samples)?;
         let layout = self.layout(samples);
         let count = samples.count;
+        check_room(count, &layout)?;
         let own = if self.shares { self.marches(samples)? } else { vec![(0, 0); count] };
         let mut distinct: BTreeMap<March, Vec<u32>> = BTreeMap::new();
         for (sample, march) in own.iter().enumerate() {
@@ -357,10 +358,14 @@ impl Study {
         let number: BTreeMap<March, u32> = marches.iter().zip(0..).map(|(&march, i)| (march, i)).collect();
         let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
         drop(own);
-        let tables: Vec<Arc<Table>> = match self.shares {
-            true => marches.iter().map(|&march| Arc::new(self.table(march))).collect(),
-            false => Vec::new(),
-        };
+        let go_on = || !progress.stop.load(Ordering::Relaxed);
+        let mut tables: Vec<Arc<Table>> = Vec::new();
+        for &march in marches.iter().filter(|_| self.shares) {
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+            tables.push(Arc::new(self.table(march)));
+        }
         let order: Vec<u32> = distinct.values().flatten().copied().collect();
         let mut results = Results {
             layout,
@@ -374,7 +379,6 @@ impl Study {
         // A few portions for every thread, in whole groups of lanes.
         let share = count.div_ceil(4 * workers.threads).next_multiple_of(SAMPLES).max(SAMPLES);
         let portions = portions(&distinct, &mut results, workers.chunk.min(share));
-        let go_on = || !progress.stop.load(Ordering::Relaxed);
         let work = || {
             portions.into_par_iter().try_for_each(|portion| {
                 let Portion { march, members, mut records, digests } = portion;
@@ -452,6 +456,26 @@ impl Study {
         }
         Ok(())
     }
+}
+
+/// Refuses more samples than can be numbered, or than there is memory for: a mistyped number is told at once.
+fn check_room(count: usize, layout: &Layout) -> Result<(), Error> {
+    let bytes = count as f64 * (8 * layout.width() + 4 * layout.instants() + 40) as f64;
+    if u32::try_from(count).is_ok() && bytes <= memory() {
+        return Ok(());
+    }
+    let allowed = format!("results would take {:.1} GB of memory, more than there is; use fewer", bytes / 1e9);
+    Err(Error::input("samples", count, allowed))
+}
+
+/// Memory of this machine [bytes]; where it does not say, what an address can reach. To ask the allocator would not help:
+/// many systems promise more than they have.
+fn memory() -> f64 {
+    let told = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
+        let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
+        line.trim().trim_end_matches(" kB").parse::<f64>().ok()
+    });
+    told.map_or(isize::MAX as f64, |kilobytes| 1024.0 * kilobytes)
 }
 
 /// What a run leaves, with the tables that its instants refer to.

@@ -457,6 +457,13 @@ impl<L: Lane> Stepper<L> {
         )
     }
 
+    /// What samples must have in common to be gathered: in these their steps take other ways, not only other numbers.
+    pub fn ways(&self) -> Vec<bool> {
+        let contacts = self.elements.contacts.iter().flat_map(Contact::ways);
+        let vehicles = self.units.iter().flat_map(|unit| [unit.rig.bare(), unit.rig.surges()]);
+        contacts.chain(vehicles).chain([self.modal.classical]).collect()
+    }
+
     /// Static loads of all contacts [N].
     pub fn static_loads(&self) -> Vec<L> {
         self.elements.contacts.iter().map(|c| c.static_load).collect()

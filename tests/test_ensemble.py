@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
+from spanwise.roads.base import total
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
 TRUCK = sw.vehicles.kishan_1973()
@@ -37,7 +39,8 @@ def own(road: sw.roads.Road | None, seed: int, sample: int) -> sw.roads.Road | N
     if isinstance(road, sw.ISO8608):
         return sw.ISO8608("B", period=160.0, seed=seed, sample=sample)
     if isinstance(road, sw.roads.Sum):
-        return sum((own(part, seed, sample) for part in road.parts), sw.Smooth())
+        parts = (own(part, seed, sample) for part in road.parts)
+        return total(part for part in parts if part is not None)
     return road
 
 
@@ -46,12 +49,15 @@ def own(road: sw.roads.Road | None, seed: int, sample: int) -> sw.roads.Road | N
 def test_a_sample_of_a_vehicle_is_a_crossing(name: str, road: str, same: Same) -> None:
     vehicle = sw.vehicles.PRESETS[name]()
     given: dict[str, Any] = {**SHORT, "speed": 21.0, "road": ROADS[road]}
+    refused = None
     try:
         sw.cross(BRIDGE, vehicle, **given)
-    except ValueError as refused:
-        with pytest.raises(ValueError) as also:  # noqa: PT011 - in the same words
+    except ValueError as error:
+        refused = str(error)
+    if refused is not None:
+        # In the same words.
+        with pytest.raises(ValueError, match=re.escape(refused)):
             sw.ensemble(BRIDGE, vehicle, samples=2, **given)
-        assert str(also.value) == str(refused)
         return
     found = sw.ensemble(BRIDGE, vehicle, samples=10, seed=3, first=5, **given)
     assert found.failures == ()
@@ -148,7 +154,11 @@ def test_a_speed_of_a_passage_alone_is_that_of_its_samples(same: Same) -> None:
 
 
 def test_kinds(same: Same) -> None:
-    fleet = [TRUCK, sw.vehicles.articulated_5_axle(), sw.vehicles.hs20()]
+    fleet: list[sw.vehicles.AnyVehicle] = [
+        TRUCK,
+        sw.vehicles.articulated_5_axle(),
+        sw.vehicles.hs20(),
+    ]
     kind = [2, 0, 1, 1, 0, 2, 2]
     found = sw.ensemble(BRIDGE, fleet, samples=7, kind=kind, speed=20.0, road=CLASS_B, **SHORT)
     assert found.axle_loads.max.shape == (7, 5)
@@ -231,8 +241,8 @@ def test_other_bridges(same: Same) -> None:
     )
     path = np.linspace(0.0, 30.0, 61)
     given = sw.Bridge.from_modes(
-        path=path,
-        frequencies=clamped.modes(3).frequencies,
+        path=path.tolist(),
+        frequencies=clamped.modes(3).frequencies.tolist(),
         shapes=clamped.mode_shapes(3, path),
         sections=[10.0, 15.0],
         influence={"deflection": clamped.deflections(path, [10.0, 15.0]).T},
@@ -267,7 +277,7 @@ def test_histories() -> None:
     assert_array_equal(moments.max(axis=1)[1] <= found.moment.max[1], True)
     assert found.histories("axle_loads", samples=[0]).shape[2] == 2
     assert found.histories("axle_loads", samples=[]).shape[0] == 0
-    with pytest.raises(ValueError, match="quantity = \"?'?shears"):
+    with pytest.raises(ValueError, match="quantity = 'shears': must be one of"):
         found.histories("shears", samples=[0])  # type: ignore[arg-type]
     stiff = np.array([1.0, 9.0])
     uneven = sw.ensemble(

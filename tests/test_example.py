@@ -88,6 +88,16 @@ def test_impact_factors_by_class(capsys: pytest.CaptureFixture[str]) -> None:
         assert largest == max(factors)
 
 
+def test_random_roads(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    load("random_roads").main(["--samples", "40", "--out", str(tmp_path)])
+    _, head, *rows = capsys.readouterr().out.splitlines()
+    assert head.split()[:2] == ["class", "mean"]
+    assert [row.split()[0] for row in rows] == list("ABCD")
+    means = [float(row.split()[1]) for row in rows]
+    assert means == sorted(means)
+    assert (tmp_path / "random_roads.png").stat().st_size > 5000
+
+
 def test_haunches_bearing_and_hinges_of_a_case() -> None:
     case = sw.Case.read(EXAMPLES / "gerber.toml")
     run = case.run(modes=4)

@@ -18,6 +18,8 @@ from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
+from spanwise.ensemble import ensemble
+from spanwise.population import Ensemble
 from spanwise.roads import Road
 from spanwise.roads.table import KINDS as ROADS
 from spanwise.run import Run
@@ -30,8 +32,10 @@ __all__ = ["Case", "CaseError"]
 Table: TypeAlias = Mapping[str, Any]
 
 BRIDGE: Final = Keys.of(Bridge)
+#: Keys of ``[crossing]`` that only ensembles have.
+FOR_ENSEMBLES: Final = ("advance",)
 #: The road has a table of its own.
-CROSSING: Final = Keys(tuple(key for key in Keys.of(cross).allowed if key != "road"))
+CROSSING: Final = Keys((*(key for key in Keys.of(cross).allowed if key != "road"), *FOR_ENSEMBLES))
 #: Tables, as they are written.
 TABLES: Final = {
     "bridge": "[bridge]",
@@ -49,7 +53,8 @@ class Case:
     """A bridge, what crosses it and how, as a case file describes it.
 
     The keys of ``[bridge]`` are the arguments of `Bridge`; those of ``[crossing]`` the keyword
-    arguments of `cross`, a ``drive`` with numbers as ``{ kind = "braking", deceleration = 4.0 }``.
+    arguments of `cross`, and ``advance``, which `ensemble` alone uses; a ``drive`` with numbers as
+    ``{ kind = "braking", deceleration = 4.0 }``.
 
     The keys of ``[vehicle]`` are the arguments of `Vehicle`, with one table ``[[vehicle.axles]]``
     for each `Axle`, front first; or for a vehicle of several bodies one table
@@ -96,6 +101,7 @@ class Case:
     ... speed = 22.86             # m/s
     ... ''')
     >>> run = case.run(modes=3)
+    >>> many = case.ensemble(samples=20, modes=3)
     """
 
     bridge: Bridge
@@ -197,10 +203,31 @@ class Case:
         RuntimeError
             If the numerics fail, or under constant traction a vehicle comes to rest.
         """
-        given = {"road": self.road, **self.crossing, **overrides}
-        place = self.source if overrides else f"{self.source}, [crossing]"
-        try:
+        own = {key: each for key, each in self.crossing.items() if key not in FOR_ENSEMBLES}
+        given = {"road": self.road, **own, **overrides}
+        with self._errors(overridden=bool(overrides)):
             return cross(self.bridge, self.passages, **given)
+
+    def ensemble(self, *, samples: int, **overrides: Any) -> Ensemble:
+        """Many crossings, with keyword arguments of `ensemble` beside or in place of the file's.
+
+        Raises
+        ------
+        CaseError
+            A ValueError: if a value is not allowed.
+        RuntimeError
+            If the numerics of the bridge fail.
+        """
+        given = {"road": self.road, **self.crossing, **overrides}
+        with self._errors(overridden=True):
+            return ensemble(self.bridge, [*self.passages], samples=samples, **given)
+
+    @contextmanager
+    def _errors(self, *, overridden: bool) -> Iterator[None]:
+        """Puts the place in front of what is said about a crossing."""
+        place = self.source if overridden else f"{self.source}, [crossing]"
+        try:
+            yield
         except ValueError as error:
             said, named = VEHICLE.subn(lambda found: _number(int(found[1])), str(error))
             raise CaseError(f"{self.source if named else place}: {said}") from error

@@ -1,4 +1,4 @@
-"""The command line: ``spanwise cross CASE.toml``, ``spanwise vehicles``, ``spanwise road``."""
+"""The command line: ``spanwise cross``, ``ensemble``, ``vehicles`` and ``road``."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from spanwise import _ensemblecommand
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._figures import figure_files
@@ -103,6 +104,7 @@ def _parser() -> _Parser:
         help="write figures there, as PNG and SVG; needs spanwise[plot]",
     )
     cross.set_defaults(work=_cross)
+    _ensemblecommand.add_to(commands)
     vehicles = commands.add_parser(
         "vehicles",
         allow_abbrev=False,

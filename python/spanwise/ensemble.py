@@ -202,24 +202,29 @@ def ensemble(
     listener = Bar(sys.stderr) if progress is True else progress or None
     if listener is not None and not callable(listener):
         raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
-    core = _core.ensemble(
-        bridge._core,
-        [[core_passage(each, own_speed=not simple) for each in event] for event in events],
-        drive=core_drive(driven),
-        road=shared._core,
-        own_road=core_road(own, seed),
-        advance=advance,
-        quantities=_cores(looked_at),
-        first=first,
-        count=samples,
-        kind_of=kinds,
-        speeds=column.column,
-        factors=[each.core for each in varied],
-        threads=None if threads is None else count("threads", threads),
-        chunk=None,
-        progress=listener,
-        **conditions.core,
-    )
+    try:
+        core = _core.ensemble(
+            bridge._core,
+            [[core_passage(each, own_speed=not simple) for each in event] for event in events],
+            drive=core_drive(driven),
+            road=shared._core,
+            own_road=core_road(own, seed),
+            advance=advance,
+            quantities=_cores(looked_at),
+            first=first,
+            count=samples,
+            kind_of=kinds,
+            speeds=column.column,
+            factors=[each.core for each in varied],
+            threads=None if threads is None else count("threads", threads),
+            chunk=None,
+            progress=listener,
+            **conditions.core,
+        )
+    finally:
+        # The line ends also where the computation does not.
+        if isinstance(listener, Bar):
+            listener.close()
     settings: dict[str, Any] = {
         "samples": samples,
         "seed": seed,

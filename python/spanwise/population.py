@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -20,6 +22,7 @@ from spanwise.run import Run
 
 if TYPE_CHECKING:
     from spanwise import _core
+    from spanwise.plotting import EnsemblePlot
 
 Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
 Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"]
@@ -402,12 +405,43 @@ class Ensemble:
             found[i] = values
         return np.empty((0, 0, 0)) if found is None else found
 
+    def summary(self) -> str:
+        """What crossed what, percentiles of extremes and impact factors, and failures, as text."""
+        from spanwise._ensemblesummary import summary
+
+        return summary(self)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.summary())}</pre>"
+
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
         return (
             f"Ensemble({self.samples} samples from {self.first} of seed {self.seed}{failed}, "
             f"{len(self.sections)} sections, {', '.join(self.quantities)}; hash {self.hash})"
         )
+
+    def to_npz(self, path: str | Path) -> None:
+        """Write all extremes, fingerprints and the settings to a NumPy archive.
+
+        Names are those of the attributes, such as ``moment_max`` and ``axle_loads_min_time``;
+        ``settings`` is JSON text. Read it with ``numpy.load(path)``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; none is left then.
+        """
+        from spanwise._ensemblefile import write_npz
+
+        write_npz(self, Path(path))
+
+    @property
+    def plot(self) -> EnsemblePlot:
+        """Figures of the ensemble; needs the extra ``spanwise[plot]``."""
+        from spanwise.plotting import EnsemblePlot
+
+        return EnsemblePlot(self)
 
 
 def _cores(quantities: Sequence[str]) -> list[str]:

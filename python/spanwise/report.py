@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,9 +51,13 @@ def as_dict(run: Run) -> dict[str, Any]:
 
 def json_text(run: Run) -> str:
     """`as_dict` as JSON, with a line for each key."""
+    return json_lines(as_dict(run))
+
+
+def json_lines(table: Mapping[str, Any]) -> str:
+    """A table as JSON, with a line for each key."""
     lines = (
-        f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}"
-        for key, value in as_dict(run).items()
+        f"{json.dumps(key)}: {json.dumps(value, allow_nan=False)}" for key, value in table.items()
     )
     return "{\n" + ",\n".join(lines) + "\n}\n"
 

@@ -88,6 +88,8 @@ struct Marched<L> {
 
 /// One sample made ready.
 struct Ready {
+    /// See [`Stepper::ways`].
+    ways: Vec<bool>,
     starter: Stepper<f64>,
     approach: Stepper<f64>,
     stepper: Stepper<f64>,
@@ -125,10 +127,13 @@ impl Task<'_> {
         };
         let none = (&[][..], &ModalDamping::Classical(Vec::new()));
         let h = self.step(sample);
+        let (starter, approach) = (stepper(if self.table.first > 0 { none } else { there }, 0.0), stepper(none, h));
+        let stepper = stepper(there, h);
         Ok(Ready {
-            starter: stepper(if self.table.first > 0 { none } else { there }, 0.0),
-            approach: stepper(none, h),
-            stepper: stepper(there, h),
+            ways: [&starter, &approach, &stepper].into_iter().flat_map(Stepper::ways).collect(),
+            starter,
+            approach,
+            stepper,
             static_loads: vehicle.static_loads(gravity),
             bridge: scaled.as_ref().map(|s| Bridge { coordinates: s.stiffness, rates: s.rates }),
             stiffness: scaled.map_or(1.0, |s| s.stiffness),
@@ -153,58 +158,75 @@ impl Task<'_> {
             // Places in the group of those that are marched.
             let mut places: Vec<usize> = (0..members.len()).collect();
             if !alike || ready.is_empty() {
-                (ready, steppers) = (Vec::new(), None);
-                places.clear();
-                for (place, &member) in members.iter().enumerate() {
-                    if alike && !ready.is_empty() {
-                        places.push(place);
-                        continue;
-                    }
-                    match self.ready(member as usize) {
-                        Ok(one) => {
-                            ready.push(one);
-                            places.push(place);
-                        }
-                        Err(cause) => {
-                            records[place].forget();
-                            failed.push(Failure { sample: member as usize, step: None, cause });
-                        }
-                    }
-                }
+                let (made, sound) = self.ready_all(members, records, failed);
+                (ready, places, steppers) = (made, sound, None);
             }
-            if places.is_empty() {
-                continue;
-            }
-            // First all samples side by side; then each that has failed, or all where it is not known which, in all
-            // lanes alone, to see when. Others come to the same as side by side.
-            let own_scratch = (&mut scratch, &mut roads);
-            let together = self.group(members, &places, &ready, false, &mut steppers, own_scratch, go_on);
-            let mut again: Vec<usize> = (0..places.len()).collect();
-            match together {
-                Ok(group) => again.retain(|&lane| {
-                    let place = places[lane];
-                    !self.write(&group, lane, &ready, members[place], &mut records[place])
-                }),
-                Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-                Err(Trouble::Failed(..)) => {}
-            }
-            for lane in again {
-                let place = places[lane];
-                let sample = members[place] as usize;
-                let own = if alike { &ready[..] } else { &ready[lane..=lane] };
-                let own_scratch = (&mut scratch, &mut roads);
-                let (step, unsettled) = match self.group(members, &[place], own, true, &mut None, own_scratch, go_on) {
-                    Ok(group) if self.write(&group, 0, own, members[place], &mut records[place]) => continue,
-                    // No step shows it, but sums of squares do.
-                    Ok(group) => (group.last.get(0) as usize, None),
-                    Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-                    Err(Trouble::Failed(step, unsettled)) => (step, unsettled),
+            // Side by side go those whose steps take the same ways, as nearly always all do.
+            let mut first = 0;
+            while first < places.len() {
+                let last = match alike {
+                    true => places.len(),
+                    false => first + ready[first..].partition_point(|other| other.ways == ready[first].ways),
                 };
-                records[place].forget();
-                failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
+                let (places, ready) = (&places[first..last], if alike { &ready[..] } else { &ready[first..last] });
+                first = last;
+                if !alike {
+                    steppers = None;
+                }
+                // First all side by side; then each that has failed, or all where it is not known which, in all lanes
+                // alone, to see when. Others come to the same as side by side.
+                let own_scratch = (&mut scratch, &mut roads);
+                let mut again: Vec<usize> = (0..places.len()).collect();
+                match self.group(members, places, ready, false, &mut steppers, own_scratch, go_on) {
+                    Ok(group) => again.retain(|&lane| {
+                        let place = places[lane];
+                        !self.write(&group, lane, ready, members[place], &mut records[place])
+                    }),
+                    Err(Trouble::Interrupted) => return Err(Error::Interrupted),
+                    Err(Trouble::Failed(..)) => {}
+                }
+                for lane in again {
+                    let place = places[lane];
+                    let sample = members[place] as usize;
+                    let own = if alike { ready } else { &ready[lane..=lane] };
+                    let own_scratch = (&mut scratch, &mut roads);
+                    let (step, unsettled) =
+                        match self.group(members, &[place], own, true, &mut None, own_scratch, go_on) {
+                            Ok(group) if self.write(&group, 0, own, members[place], &mut records[place]) => continue,
+                            // No step shows it, but sums of squares do.
+                            Ok(group) => (group.last.get(0) as usize, None),
+                            Err(Trouble::Interrupted) => return Err(Error::Interrupted),
+                            Err(Trouble::Failed(step, unsettled)) => (step, unsettled),
+                        };
+                    records[place].forget();
+                    failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
+                }
             }
         }
         Ok(())
+    }
+
+    /// Samples made ready, those that take the same ways next to each other, with their places; of samples that are
+    /// alike only one. A vehicle that cannot be is a failure.
+    fn ready_all(
+        &self,
+        members: &[u32],
+        records: &mut [Record<'_>],
+        failed: &mut Vec<Failure>,
+    ) -> (Vec<Ready>, Vec<usize>) {
+        let mut ready: Vec<(Ready, usize)> = Vec::with_capacity(members.len());
+        for (place, &member) in members.iter().enumerate() {
+            match self.ready(member as usize) {
+                Ok(one) if self.samples.alike() => return (vec![one], (0..members.len()).collect()),
+                Ok(one) => ready.push((one, place)),
+                Err(cause) => {
+                    records[place].forget();
+                    failed.push(Failure { sample: member as usize, step: None, cause });
+                }
+            }
+        }
+        ready.sort_by(|a, b| a.0.ways.cmp(&b.0.ways));
+        ready.into_iter().unzip()
     }
 
     /// One group of lanes, filled up with its last sample, marched to the end.

@@ -6,12 +6,14 @@ Every method returns a `matplotlib.figure.Figure` that belongs to no window: sav
 
 from spanwise.plotting.bridge import BridgePlot, SettlementPlot
 from spanwise.plotting.comparison import compare_convergence, compare_impact_factors
+from spanwise.plotting.ensemble import EnsemblePlot
 from spanwise.plotting.road import RoadPlot
 from spanwise.plotting.run import RunPlot
 from spanwise.plotting.vehicle import VehiclePlot
 
 __all__ = [
     "BridgePlot",
+    "EnsemblePlot",
     "RoadPlot",
     "RunPlot",
     "SettlementPlot",

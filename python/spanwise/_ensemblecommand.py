@@ -1,0 +1,90 @@
+"""The command ``spanwise ensemble CASE.toml``: many crossings of a case."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from spanwise._ensemblefile import as_dict, npz_pieces
+from spanwise._files import write_files
+from spanwise.case import Case
+from spanwise.report import json_lines
+
+if TYPE_CHECKING:
+    from argparse import _SubParsersAction
+
+
+def add_to(commands: _SubParsersAction[Any]) -> None:
+    """Add the command and its options."""
+    command = commands.add_parser(
+        "ensemble",
+        allow_abbrev=False,
+        help="drive over a bridge many times, each time on a random road of its own",
+        description="Drive the vehicles of a case over its bridge many times, each time on a "
+        "random road of its own if the case has one, and print percentiles of the largest "
+        "responses and of the impact factors. Everything is computed before any file is written.",
+    )
+    command.add_argument(
+        "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
+    )
+    command.add_argument(
+        "--samples", type=int, required=True, metavar="N", help="number of crossings"
+    )
+    command.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="seed of the random roads; 0 by default"
+    )
+    command.add_argument(
+        "--first", type=int, default=0, metavar="N", help="number of the first sample; 0 by default"
+    )
+    command.add_argument(
+        "--threads", type=int, metavar="N", help="threads; as many as the processor has by default"
+    )
+    command.add_argument(
+        "--modes", type=int, metavar="N", help="number of modes, not that of the case"
+    )
+    command.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE.npz",
+        help="write all extremes of all samples as a NumPy archive",
+    )
+    command.add_argument(
+        "--json",
+        metavar="FILE",
+        help="write percentiles as JSON; - for standard output, in place of the summary",
+    )
+    command.set_defaults(work=run)
+
+
+def run(options: argparse.Namespace) -> str:
+    """Computes the ensemble, writes the files asked for, and gives the text to print."""
+    if options.out is not None and options.out.suffix != ".npz":
+        raise ValueError(f"--out {options.out}: must end in .npz")
+    case = Case.read(options.case)
+    given = {
+        key: getattr(options, key)
+        for key in ("modes", "threads")
+        if getattr(options, key) is not None
+    }
+    found = case.ensemble(
+        samples=options.samples,
+        seed=options.seed,
+        first=options.first,
+        progress=sys.stderr.isatty(),
+        **given,
+    )
+    text = found.summary() + "\n"
+    files: list[tuple[Path, Iterable[bytes]]] = []
+    if options.json is not None:
+        table = json_lines(as_dict(found))
+        if options.json == "-":
+            text = table
+        else:
+            files.append((Path(options.json), [table.encode()]))
+    if options.out is not None:
+        files.append((options.out, npz_pieces(found)))
+    write_files(files)
+    return text

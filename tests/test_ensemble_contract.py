@@ -1,0 +1,319 @@
+"""What the work does not change, what ends it, and what it may take: hash, interrupts, memory."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import spanwise as sw
+
+BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
+TRUCK = sw.vehicles.kishan_1973()
+GIVEN: dict[str, Any] = {
+    "speed": 21.0,
+    "approach": 20.0,
+    "ramp": 5.0,
+    "modes": 3,
+    "road": sw.ISO8608("B", period=160.0),
+    "seed": 11,
+}
+
+#: Of some seconds, for what ends it before.
+LONG = 60_000
+
+
+def isas() -> list[str]:
+    """The instruction sets of this processor, which the message about another tells."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SPANWISE_ISA", "none")
+        with pytest.raises(ValueError, match='SPANWISE_ISA = "none": this processor has') as told:
+            sw.ensemble(BRIDGE, TRUCK, samples=1, speed=20.0)
+    return str(told.value).split(" has ")[1].split(", ")
+
+
+def test_nothing_about_the_work_changes_a_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    speed = np.linspace(10.0, 30.0, 75)
+    given = {**GIVEN, "speed": speed, "samples": 75}
+    expected = sw.ensemble(BRIDGE, TRUCK, **given)
+    for isa in isas():
+        monkeypatch.setenv("SPANWISE_ISA", isa)
+        for threads in (1, 2, 7):
+            found = sw.ensemble(BRIDGE, TRUCK, threads=threads, **given)
+            assert found.hash == expected.hash
+            assert found.isa == isa
+            assert found.threads == threads
+    assert len(expected.hash) == 16
+    int(expected.hash, 16)
+
+
+def test_a_sample_alone_is_as_among_others() -> None:
+    all_ = sw.ensemble(BRIDGE, TRUCK, samples=40, first=100, **GIVEN)
+    for row in (0, 13, 39):
+        alone = sw.ensemble(BRIDGE, TRUCK, samples=1, first=100 + row, **GIVEN)
+        assert alone.digests[0] == all_.digests[row]
+        assert_array_equal(alone.shear.max_time[0], all_.shear.max_time[row])
+    other = sw.ensemble(BRIDGE, TRUCK, samples=40, first=100, **{**GIVEN, "seed": 12})
+    assert not (other.digests == all_.digests).any()
+
+
+def test_results_are_not_to_be_written_to() -> None:
+    found = sw.ensemble(BRIDGE, TRUCK, samples=3, **GIVEN)
+    for values in (
+        found.moment.max,
+        found.moment.static_max,
+        found.moment.max_time,
+        found.shear.min,
+        found.digests,
+        found.load_coefficients,
+        found.sections,
+    ):
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 0.0
+
+
+def test_progress() -> None:
+    told: list[tuple[int, int]] = []
+    sw.ensemble(
+        BRIDGE,
+        TRUCK,
+        samples=1000,
+        progress=lambda done, total: told.append((done, total)),
+        **GIVEN,
+    )
+    assert told[-1] == (1000, 1000)
+    assert {total for _, total in told} == {1000}
+    assert [done for done, _ in told] == sorted(done for done, _ in told)
+    told.clear()
+    started = time.perf_counter()
+    sw.ensemble(BRIDGE, TRUCK, samples=5000, progress=lambda *now: told.append(now), **GIVEN)
+    assert len(told) <= (time.perf_counter() - started) / 0.1 + 1
+    told.clear()
+    sw.ensemble(BRIDGE, TRUCK, samples=0, progress=lambda *now: told.append(now), **GIVEN)
+    assert told == [(0, 0)]
+
+
+def test_a_line_of_progress(capsys: pytest.CaptureFixture[str]) -> None:
+    sw.ensemble(BRIDGE, TRUCK, samples=100, progress=True, **GIVEN)
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert "] 100 of 100, " in err
+    assert max(map(len, err.rstrip("\n").split("\r"))) < 80
+    sw.ensemble(BRIDGE, TRUCK, samples=2, progress=False, **GIVEN)
+    assert capsys.readouterr().err == ""
+
+
+def test_what_the_listener_raises_ends_the_work() -> None:
+    class Enough(Exception):
+        pass
+
+    def listener(done: int, total: int) -> None:
+        raise Enough(f"{done} of {total}")
+
+    started = time.perf_counter()
+    with pytest.raises(Enough, match=f"of {LONG}"):
+        sw.ensemble(BRIDGE, TRUCK, samples=LONG, progress=listener, **GIVEN)
+    assert time.perf_counter() - started < 1.0
+    with pytest.raises(Enough, match="3 of 3"):
+        sw.ensemble(BRIDGE, TRUCK, samples=3, progress=listener, **GIVEN)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+@pytest.mark.parametrize("drive", ["constant-speed", "constant-traction"])
+def test_interrupt(drive: str) -> None:
+    # In a process of its own, whose main thread takes the signal.
+    program = f"""
+        import os, signal, threading, time
+        import spanwise as sw
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        bridge = sw.Bridge(spans=[18.288] * 2, EI=1.94148e9, mass=6037.7, stations_per_span=3)
+        sent = []
+
+        def send():
+            sent.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Timer(0.4, send).start()
+        try:
+            sw.ensemble(
+                bridge, sw.vehicles.kishan_1973(), samples={LONG}, speed=20.0, drive={drive!r},
+                road=sw.ISO8608("B"),
+            )
+        except KeyboardInterrupt:
+            print(time.perf_counter() - sent[0])
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.stderr == ""
+    assert float(done.stdout) < 0.5
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+def test_interrupt_while_the_bridge_is_prepared() -> None:
+    program = """
+        import os, signal, threading, time
+        import numpy as np
+        import spanwise as sw
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        bridge = sw.Bridge(spans=[20.0] * 8, EI=2e9, mass=6e3, stations_per_span=20)
+        bridge.modes(3)
+        sent = []
+
+        def send():
+            sent.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Timer(0.3, send).start()
+        try:
+            while True:
+                sw.ensemble(bridge, sw.vehicles.kishan_1973(), samples=0, speed=20.0, modes=3,
+                            sections=np.linspace(0.0, 159.0 + np.random.rand(), 900))
+        except KeyboardInterrupt:
+            print(time.perf_counter() - sent[0])
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.stderr == ""
+    assert float(done.stdout) < 2.0
+
+
+def test_several_at_once() -> None:
+    speeds = [15.0, 20.0, 25.0, 30.0]
+    expected = [sw.ensemble(BRIDGE, TRUCK, samples=60, **{**GIVEN, "speed": v}) for v in speeds]
+    told: list[int] = []
+
+    def one(speed: float) -> sw.Ensemble:
+        return sw.ensemble(
+            BRIDGE,
+            TRUCK,
+            samples=60,
+            progress=lambda done, _: told.append(done),
+            **{**GIVEN, "speed": speed},
+        )
+
+    with ThreadPoolExecutor(4) as pool:
+        found = [*pool.map(one, speeds)]
+    assert [each.hash for each in found] == [each.hash for each in expected]
+    assert told.count(60) == 4
+
+
+def test_python_goes_on_meanwhile() -> None:
+    ticks = 0
+    over = threading.Event()
+
+    def tick() -> None:
+        nonlocal ticks
+        while not over.wait(0.01):
+            ticks += 1
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    sw.ensemble(BRIDGE, TRUCK, samples=3000, **GIVEN)
+    over.set()
+    thread.join()
+    assert ticks >= 5
+
+
+def test_failures_are_marked_and_leave_the_others() -> None:
+    # Wheels so stiff that contact does not settle in the step asked for.
+    stiff = np.ones(40)
+    stiff[[3, 17]] = 1e4
+    given = {**GIVEN, "advance": 0.2}
+    found = sw.ensemble(
+        BRIDGE, TRUCK, samples=40, first=50, factors={"tyre_stiffness": stiff}, **given
+    )
+    assert [each.sample for each in found.failures] == [53, 67]
+    assert "shorten the step" in found.failures[0].cause
+    assert found.failures[0].step is not None
+    for values in (
+        found.moment.max,
+        found.moment.max_time,
+        found.shear.min_position,
+        found.axle_loads.max,
+        found.load_coefficients,
+        found.impact_factors("sagging"),
+        found.impact_factors("shear"),
+        found.body_accelerations.rms,
+    ):
+        assert np.isnan(values[[3, 17]]).all()
+    for values in (found.moment.max, found.moment.max_time, found.axle_loads.max):
+        assert np.isfinite(np.delete(values, [3, 17], axis=0)).all()
+    sound = sw.ensemble(
+        BRIDGE, TRUCK, samples=40, first=50, factors={"tyre_stiffness": np.ones(40)}, **given
+    )
+    assert sound.failures == ()
+    others = np.delete(np.arange(40), [3, 17])
+    assert_array_equal(found.digests[others], sound.digests[others])
+    assert "2 failed" in repr(found)
+    assert "failed    sample 53 in step" in found.summary()
+    with pytest.raises(RuntimeError, match="no convergence"):
+        found.run(3)
+    again = sw.ensemble(
+        BRIDGE,
+        TRUCK,
+        samples=40,
+        first=50,
+        factors={"tyre_stiffness": stiff},
+        threads=1,
+        **given,
+    )
+    assert again.hash == found.hash
+
+
+def test_every_sample_may_fail() -> None:
+    given = {**GIVEN, "advance": 0.2}
+    found = sw.ensemble(BRIDGE, TRUCK, samples=3, factors={"tyre_stiffness": 1e4}, **given)
+    assert len(found.failures) == 3
+    assert "3 failed" in found.summary()
+
+
+MEASURE = """
+    import resource, sys
+    import numpy as np
+    import spanwise as sw
+
+    bridge = sw.Bridge(spans=[18.288] * 2, EI=1.94148e9, mass=6037.7, stations_per_span=3)
+    given = dict(speed=30.0, approach=10.0, ramp=5.0, modes=1, road=sw.ISO8608("B", period=120.0),
+                 sections=np.linspace(0.0, 36.576, 25), advance=0.15)
+    sw.ensemble(bridge, sw.vehicles.quarter_car(), samples=500, **given)
+    unit = 1 if sys.platform == "darwin" else 1024
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+    found = sw.ensemble(bridge, sw.vehicles.quarter_car(), samples=int(sys.argv[1]), **given)
+    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+    arrays = found._numbers.nbytes + found._instants.nbytes + found.digests.nbytes
+    assert not found.failures
+    print(after - before - arrays, arrays)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such measure")
+@pytest.mark.parametrize(
+    "samples",
+    [
+        100_000,
+        pytest.param(
+            1_000_000,
+            marks=pytest.mark.skipif(
+                "SPANWISE_SLOW" not in os.environ, reason="minutes; SPANWISE_SLOW=1 runs it"
+            ),
+        ),
+    ],
+)
+def test_memory(samples: int) -> None:
+    command = [sys.executable, "-c", textwrap.dedent(MEASURE), str(samples)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=1800)
+    beyond, arrays = map(int, done.stdout.split())
+    assert arrays > 2000 * samples
+    assert beyond < 300e6

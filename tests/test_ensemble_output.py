@@ -1,0 +1,210 @@
+"""An ensemble as text, archive, figures and on the command line."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import spanwise as sw
+from spanwise.cli import main
+
+BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
+TRUCK = sw.vehicles.kishan_1973()
+
+CASE = """
+[bridge]
+spans = [18.288, 18.288]
+EI = 1.94148e9
+mass = 6037.7
+stations_per_span = 3
+[vehicle]
+preset = "kishan-1973"
+[road]
+kind = "iso-8608"
+class = "B"
+period = 128.0
+[crossing]
+speed = 22.86
+modes = 3
+approach = 20
+ramp = 5
+advance = 0.03
+"""
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def found() -> sw.Ensemble:
+    return sw.ensemble(
+        BRIDGE,
+        TRUCK,
+        samples=200,
+        seed=1,
+        speed=np.linspace(15.0, 30.0, 200),
+        road=sw.ISO8608("C", period=128.0),
+        factors={"body_mass": np.linspace(0.8, 1.2, 200)},
+        approach=20.0,
+        ramp=5.0,
+        modes=3,
+    )
+
+
+def test_summary(found: sw.Ensemble) -> None:
+    text = found.summary()
+    assert found._repr_html_().startswith("<pre>ensemble  200 samples from number 0 of seed 1")
+    assert max(map(len, text.split("\n"))) <= 110
+    assert "15 to 30 m/s, constant-speed" in text
+    assert "iso-8608 class C, drawn anew for each sample" in text
+    assert "varied    body_mass from 0.8 to 1.2" in text
+    assert f"hash      {found.hash}" in text
+    assert "side by side" in text
+    (row,) = [line for line in text.split("\n") if line.startswith("moment, sagging")]
+    most = found.moment.max.max(axis=1) / 1e3
+    numbers = [float(each) for each in row.split("]")[1].split()[:5]]
+    expected = [*np.percentile(most, [5, 50, 95, 99]), most.max()]
+    assert numbers == pytest.approx(expected, abs=1e-3)
+    (row,) = [line for line in text.split("\n") if line.startswith("sagging")]
+    at = int(np.argmax(found.moment.static_max.mean(axis=0)))
+    factors = found.impact_factors("sagging")[:, at]
+    assert float(row.split()[1]) == pytest.approx(factors.mean(), abs=1e-3)
+    alone = sw.ensemble(BRIDGE, TRUCK, samples=1, speed=20.0, drive="constant-traction")
+    assert "one by one" in alone.summary()
+    assert "0 samples" in sw.ensemble(BRIDGE, TRUCK, samples=0, speed=20.0).summary()
+
+
+def test_repr(found: sw.Ensemble) -> None:
+    assert repr(found) == (
+        "Ensemble(200 samples from 0 of seed 1, 25 sections, deflection, moment, shear, "
+        f"reactions; hash {found.hash})"
+    )
+    assert repr(found.moment) == "SampleExtremes(200 samples, 25 columns)"
+
+
+def test_archive(found: sw.Ensemble, tmp_path: Path) -> None:
+    path = tmp_path / "found.npz"
+    found.to_npz(path)
+    with np.load(path) as archive:
+        assert_array_equal(archive["moment_max"], found.moment.max)
+        assert_array_equal(archive["shear_left_min_time"], found.shear_left.min_time)
+        assert_array_equal(archive["axle_loads_static_max"], found.axle_loads.static_max)
+        assert str(archive["hash"]) == found.hash
+        settings = json.loads(str(archive["settings"]))
+    assert settings["ensemble"]["road"]["class"] == "C"
+    assert settings["ensemble"]["samples"] == 200
+    with pytest.raises(OSError, match="no such folder"):
+        found.to_npz(tmp_path / "missing" / "found.npz")
+
+
+@pytest.mark.parametrize("quantity", ["deflection", "sagging", "hogging", "shear", "reactions"])
+def test_figures_of_impact_factors(found: sw.Ensemble, quantity: str) -> None:
+    figure = found.plot.impact_factors(quantity)  # type: ignore[arg-type]
+    (ax,) = figure.axes
+    assert "dynamic" in ax.get_ylabel()
+    if quantity not in ("reactions",):
+        values = found.impact_factors(quantity)  # type: ignore[arg-type]
+        drawn = next(line for line in ax.lines if line.get_label() == "median")
+        there = ~np.isnan(values).all(axis=0)
+        expected = np.full(values.shape[1], np.nan)
+        expected[there] = np.nanmedian(values[:, there], axis=0)
+        assert_array_equal(np.asarray(drawn.get_ydata()), expected)
+    figure.canvas.draw()
+    found.plot.impact_factors("axle_loads").canvas.draw()
+
+
+@pytest.mark.parametrize("quantity", ["deflection", "moment", "shear", "reactions"])
+def test_figures_of_envelopes(found: sw.Ensemble, quantity: str) -> None:
+    figure = found.plot.envelope(quantity)  # type: ignore[arg-type]
+    figure.canvas.draw()
+    assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} & {"static"}  # type: ignore[union-attr]
+    with pytest.raises(ValueError, match="was not looked at"):
+        found.plot.envelope("clamp_moments")
+    empty = sw.ensemble(BRIDGE, TRUCK, samples=0, speed=20.0)
+    with pytest.raises(ValueError, match="samples: none has a value to draw"):
+        empty.plot.envelope()
+
+
+def test_a_case() -> None:
+    case = sw.Case.parse(CASE)
+    many = case.ensemble(samples=5, seed=3)
+    assert many.settings["advance"] == 0.03
+    assert case.run().sections.shape == many.sections.shape
+    with pytest.raises(sw.case.CaseError, match="case: samples = -1: must not be negative"):
+        case.ensemble(samples=-1)
+    with pytest.raises(sw.case.CaseError, match=r"unknown key 'advanse'.*did you mean"):
+        sw.Case.parse(CASE.replace("advance", "advanse"))
+
+
+def test_command(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    npz, table = case.parent / "out.npz", case.parent / "out.json"
+    command = ["ensemble", str(case), "--samples", "20", "--seed", "5", "--first", "3"]
+    command += ["--threads", "2", "--modes", "2"]
+    assert main([*command, "--out", str(npz), "--json", str(table)]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    expected = sw.Case.read(case).ensemble(samples=20, seed=5, first=3, modes=2)
+    assert f"hash      {expected.hash}" in out
+    assert "crossings/s" in out
+    with np.load(npz) as archive:
+        assert_array_equal(archive["deflection_min"], expected.deflection.min)
+        assert_array_equal(archive["numbers"], np.arange(3, 23))
+    results = json.loads(table.read_text(encoding="utf-8"))
+    assert results["hash"] == expected.hash
+    percentiles = results["extremes"]["moment"]["max"]
+    assert percentiles[3] == pytest.approx(np.median(expected.moment.max, axis=0).tolist())
+    assert main([*command, "--json", "-"]) == 0
+    assert json.loads(capsys.readouterr().out)["hash"] == expected.hash
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--samples", "-3"], "samples = -3: must not be negative"),
+        (["--samples", "x"], "argument --samples: invalid int value: 'x'"),
+        (["--samples", "3", "--threads", "0"], "threads = 0: must be 1 or more"),
+        (["--samples", "3", "--out", "here.txt"], "--out here.txt: must end in .npz"),
+        (["--samples", "3", "--out", "missing/here.npz"], "missing: no such folder"),
+        ([], "the following arguments are required: --samples"),
+    ],
+)
+def test_command_refuses(
+    case: Path, more: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        code = main(["ensemble", str(case), *more])
+    except SystemExit as stop:
+        code = int(str(stop.code))
+    assert code == 2
+    assert says in capsys.readouterr().err
+    assert {path.name for path in case.parent.iterdir()} == {"case.toml"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+def test_command_interrupted(case: Path) -> None:
+    program = f"""
+        import os, signal, sys, threading
+        from spanwise.cli import main
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        sys.exit(main(["ensemble", {str(case)!r}, "--samples", "200000",
+                       "--out", {str(case.parent / "run.npz")!r}]))
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.stderr == "spanwise: interrupted\n"
+    assert done.returncode == 128 + signal.SIGINT
+    assert [path.name for path in case.parent.iterdir()] == ["case.toml"]
