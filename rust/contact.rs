@@ -184,10 +184,11 @@ impl<L: Lane> Contact<L> {
         }
     }
 
-    /// What side by side samples must have in common: in these their steps take other ways, not only other numbers.
-    pub fn ways(&self) -> [bool; 4] {
+    /// What samples must have in common to be gathered: in these their steps take other ways, not only other numbers.
+    pub fn ways(&self) -> [bool; 6] {
         let has = |of: fn(&Suspension<L>) -> bool| self.suspension.as_ref().is_some_and(of);
-        [self.weights.plain, self.suspension.is_some(), has(|s| s.trapezoidal), has(|s| s.damped)]
+        let [elastic, leaf] = self.suspension.as_ref().map_or([false; 2], |s| s.law.kind());
+        [self.weights.plain, self.suspension.is_some(), has(|s| s.trapezoidal), has(|s| s.damped), elastic, leaf]
     }
 
     /// The suspension in the static state.
@@ -304,6 +305,11 @@ impl<L: Lane> Rubbing<L> {
             initial: L::splat(element.friction.initial),
             law: Law::new(&element.friction, element.stiffness),
         }
+    }
+
+    /// See [`Contact::ways`].
+    pub fn ways(&self) -> [bool; 2] {
+        self.law.kind()
     }
 
     /// In the static state.

@@ -68,6 +68,11 @@ impl<L: Lane> Law<L> {
         }
     }
 
+    /// Of which kind it is.
+    pub fn kind(&self) -> [bool; 2] {
+        [matches!(self, Law::Elastic { .. }), matches!(self, Law::Leaf { .. })]
+    }
+
     /// From those of each sample, all of one kind.
     pub fn gather(each: &[&Law<f64>]) -> Self {
         let numbers = |law: &Law<f64>| match *law {

@@ -461,7 +461,8 @@ impl<L: Lane> Stepper<L> {
     pub fn ways(&self) -> Vec<bool> {
         let contacts = self.elements.contacts.iter().flat_map(Contact::ways);
         let vehicles = self.units.iter().flat_map(|unit| [unit.rig.bare(), unit.rig.surges()]);
-        contacts.chain(vehicles).chain([self.modal.classical]).collect()
+        let rubbing = self.elements.rubbing.iter().flat_map(Rubbing::ways);
+        contacts.chain(vehicles).chain([self.modal.classical]).chain(rubbing).collect()
     }
 
     /// Static loads of all contacts [N].

@@ -17,7 +17,7 @@ use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::settings::Settings;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Vehicle};
 
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
 /// and some samples alone.
@@ -160,6 +160,43 @@ fn a_sample_with_its_own_factors_is_a_crossing() {
         let samples = Samples { factors: factors.collect(), speeds, ..Samples::at_speed(40, count, 1.0) };
         check_alone(&study, &samples, &run(&study, &samples, Isa::chosen().unwrap(), 2), &format!("{recovery:?}"));
     }
+}
+
+/// Without its dampers or its friction a sample's step is made of other parts than its neighbours'.
+#[test]
+fn a_factor_of_zero_is_the_sample_s_own() {
+    let none = Friction::NONE;
+    for (vehicle, parameter) in [
+        (half_car([700.0, 1100.0], 1.0, 1.0, elastic(5e3, 2e7)), Parameter::FrictionLimit),
+        (kishan_vehicle(), Parameter::FrictionLimit),
+        (half_car([0.0; 2], 1.0, 1.0, none), Parameter::SuspensionDamping),
+        (half_car([0.0; 2], 1.0, 0.0, none), Parameter::SuspensionDamping),
+        (half_car([0.0; 2], 0.0, 1.0, none), Parameter::TyreDamping),
+    ] {
+        let kinds = vec![vec![Passage::of(vehicle)]];
+        let analysis = kishan_analysis(5, Recovery::ForceSummation);
+        let own = Some((synthesis(), SEED));
+        let study = Study::new(analysis, kinds, Settings::at_speed(SPEED), own, None, &ALL).unwrap();
+        for zeros in [vec![0], vec![3], vec![1, 2, 5, 7]] {
+            let values = (0..19).map(|i| if zeros.contains(&i) { 0.0 } else { 1.0 }).collect();
+            let factors = vec![Factors { parameter, width: 1, values }];
+            let samples = Samples { factors, ..samples(19) };
+            let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
+            check_alone(&study, &samples, &found, &format!("{parameter:?}, {zeros:?}"));
+        }
+    }
+}
+
+/// Speeds so different that the dampers of a massless axle are strong for some steps and weak for others.
+#[test]
+fn dampers_are_weak_in_long_steps_only() {
+    let axle = Axle { tyre_damping: 1.2e4, ..Axle::new(0.0, 8e5, 1.2e6) };
+    let kinds = vec![vec![Passage::of(Vehicle::new(5e3, 3e4, 1.2, vec![axle]).unwrap())]];
+    let analysis = kishan_analysis(5, Recovery::ForceSummation);
+    let study = Study::new(analysis, kinds, Settings::at_speed(1.0), None, Some(0.2), &ALL).unwrap();
+    let samples = Samples { speeds: (0..33).map(|i| 6.0 + 40.0 * spread(i)).collect(), ..samples(33) };
+    check_ways(&study, &samples, &[0, 1, 2, 3]);
+    check_alone(&study, &samples, &run(&study, &samples, Isa::Scalar, 1), "weak dampers");
 }
 
 /// Nothing of a study of vehicles that go their own ways depends on the work either.
