@@ -95,11 +95,13 @@ impl<'a, L: Lane> Shared<'a, L> {
                     // Slope and curvature count only where the step asks for them.
                     if self.table.kinds > 1 {
                         *surface = share.of([part(0), part(1), part(2)]);
-                    } else if *share == Share::Whole {
-                        surface.elevation = part(0);
                     } else {
-                        let unasked = L::splat(0.0);
-                        surface.elevation = share.of([part(0), unasked, unasked]).elevation;
+                        // Written at once: most of the road counts as it is.
+                        surface.elevation = part(0);
+                        if *share != Share::Whole {
+                            let unasked = L::splat(0.0);
+                            surface.elevation = share.of([surface.elevation, unasked, unasked]).elevation;
+                        }
                     }
                 }
             }
