@@ -95,6 +95,16 @@ impl<L: Lane> Suspension<L> {
         let past = self.per_step * before.shortening;
         if self.trapezoidal { past + before.rate } else { past }
     }
+
+    /// As [`Law::friction`].
+    #[inline(always)]
+    fn friction(&self, trial: L, b: L, before: &Stroke<L>, coulomb: bool) -> L {
+        match self.law {
+            Law::Rigid { limit } => trial.smaller(limit).larger(-limit),
+            _ if coulomb => unreachable!(),
+            law => law.friction(trial, b, before),
+        }
+    }
 }
 
 impl<L: Lane> Contact<L> {
@@ -202,12 +212,12 @@ impl<L: Lane> Contact<L> {
         Stroke { rate: self.onset * delta, ..self.at_rest() }
     }
 
-    /// Everything in p = law(u − S p) that holds for a whole step, for a suspension that was at `before` at its start.
+    /// Everything in p = law(u − S p) that follows from S alone.
     #[inline(always)]
-    pub fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
+    pub fn hold(&self, compliance: L) -> Held<L> {
         let hardening = L::splat(1.0) + self.stiffness * compliance;
         let Some(suspension) = &self.suspension else {
-            return Prepared { gain: self.stiffness / hardening, ..Prepared::nothing() };
+            return Held { gain: self.stiffness / hardening, ..Held::nothing() };
         };
         // With the tyre's p = A − B s the suspension meets f = a − (B + k_s) s; 1/(1 + k S) and 1/(B + k_s) from the
         // reciprocal of their product.
@@ -215,19 +225,46 @@ impl<L: Lane> Contact<L> {
         let reciprocal = L::splat(1.0) / (hardening * joint);
         let softened = reciprocal * joint;
         let slope = suspension.tyre * softened;
-        let (mut stuck, mut beside) = (L::splat(0.0), suspension.initial);
-        if suspension.damped {
-            let past = suspension.past(before);
-            stuck = suspension.tyre_damping * past * softened;
-            beside = beside + suspension.damping * past;
-        }
-        Prepared {
+        Held {
             gain: self.stiffness * softened,
-            stuck: stuck - slope * before.shortening,
-            beside: beside - suspension.stiffness * before.shortening,
+            slope,
+            softened,
             share: suspension.tyre * (reciprocal * hardening),
             resistance: slope + suspension.stiffness,
             reach: L::splat(0.0),
+        }
+    }
+
+    /// Whether this is a massless axle with rigid Coulomb friction and without dampers.
+    fn is_coulomb(&self) -> bool {
+        let coulomb = |s: &Suspension<L>| !s.damped && matches!(s.law, Law::Rigid { .. });
+        self.suspension.as_ref().is_some_and(coulomb) && !self.constant
+    }
+
+    /// The suspension. Callers who know that it is a `coulomb` one say so in a literal, and what others do is not there.
+    #[inline(always)]
+    fn suspension(&self, coulomb: bool) -> Option<&Suspension<L>> {
+        match &self.suspension {
+            None if coulomb => unreachable!(),
+            suspension => suspension.as_ref(),
+        }
+    }
+
+    /// The rest that holds for a whole step, for a suspension that was at `before` at its start.
+    #[inline(always)]
+    pub fn prepare(&self, held: Held<L>, before: &Stroke<L>, coulomb: bool) -> Prepared<L> {
+        let zero = L::splat(0.0);
+        let Some(suspension) = self.suspension(coulomb) else { return Prepared { held, stuck: zero, beside: zero } };
+        let (mut stuck, mut beside) = (zero, suspension.initial);
+        if !coulomb && suspension.damped {
+            let past = suspension.past(before);
+            stuck = suspension.tyre_damping * past * held.softened;
+            beside = beside + suspension.damping * past;
+        }
+        Prepared {
+            held,
+            stuck: stuck - held.slope * before.shortening,
+            beside: beside - suspension.stiffness * before.shortening,
         }
     }
 
@@ -235,13 +272,14 @@ impl<L: Lane> Contact<L> {
     ///
     /// The law rises with δ and S ≥ 0, so the solution is unique.
     #[inline(always)]
-    pub fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
-        let mut p = prepared.gain * u;
-        if let Some(suspension) = &self.suspension {
-            p = p + prepared.stuck;
-            let trial = p + prepared.beside;
-            let friction = suspension.law.friction(trial, prepared.resistance, before);
-            p = p - prepared.share * (trial - friction);
+    pub fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>, coulomb: bool) -> L {
+        let Prepared { held, stuck, beside } = *prepared;
+        let mut p = held.gain * u;
+        if let Some(suspension) = self.suspension(coulomb) {
+            p = p + stuck;
+            let trial = p + beside;
+            let friction = suspension.friction(trial, held.resistance, before, coulomb);
+            p = p - held.share * (trial - friction);
         }
         // In this order, so that what is not a number stays so and is found.
         self.floor.larger(p)
@@ -249,12 +287,12 @@ impl<L: Lane> Contact<L> {
 
     /// The suspension at the end of a step that ended with increment p.
     #[inline(always)]
-    pub fn settle(&self, p: L, prepared: &Prepared<L>, before: &Stroke<L>) -> Stroke<L> {
-        let Some(suspension) = &self.suspension else { return *before };
+    pub fn settle(&self, p: L, prepared: &Prepared<L>, before: &Stroke<L>, coulomb: bool) -> Stroke<L> {
+        let Some(suspension) = self.suspension(coulomb) else { return *before };
         let trial = p + prepared.beside;
-        let friction = suspension.law.friction(trial, suspension.stiffness, before);
+        let friction = suspension.friction(trial, suspension.stiffness, before, coulomb);
         let shortening = before.shortening + (trial - friction) * suspension.give;
-        let rate = match suspension.damped {
+        let rate = match !coulomb && suspension.damped {
             true => suspension.per_step * shortening - suspension.past(before),
             false => before.rate,
         };
@@ -262,16 +300,20 @@ impl<L: Lane> Contact<L> {
     }
 }
 
-/// What holds for a whole step of one element.
+/// How many numbers a [`Held`] is.
+pub const HELD: usize = 6;
+
+/// What holds of one element wherever it stands with the same compliance, whatever its state.
 ///
-/// Of a contact: while the suspension stays where it was, p = gain·u + stuck, and it carries p + beside against friction;
-/// of what is too much for friction the contact loses its share. Of a friction element: as long as it sticks,
-/// f = gain·u + stuck.
+/// Of a contact: while the suspension stays where it was, p rises by the gain with u; of what is too much for friction the
+/// contact loses its share. Of a friction element: as long as it sticks, its force rises by the gain.
 #[derive(Debug, Clone, Copy)]
-pub struct Prepared<L> {
+pub struct Held<L> {
     gain: L,
-    stuck: L,
-    beside: L,
+    /// By how much less p there is, per unit by which the suspension was shortened.
+    slope: L,
+    /// 1/(1 + k S).
+    softened: L,
     share: L,
     /// By how much less force there is for friction, per unit that the suspension moves.
     resistance: L,
@@ -279,12 +321,40 @@ pub struct Prepared<L> {
     reach: L,
 }
 
+impl<L: Lane> Held<L> {
+    #[inline(always)]
+    fn nothing() -> Self {
+        Held::of(&[L::splat(0.0); HELD])
+    }
+
+    /// From its numbers.
+    #[inline(always)]
+    fn of(numbers: &[L]) -> Self {
+        let n = &numbers[..HELD];
+        Held { gain: n[0], slope: n[1], softened: n[2], share: n[3], resistance: n[4], reach: n[5] }
+    }
+
+    /// As numbers.
+    #[inline(always)]
+    fn numbers(&self) -> [L; HELD] {
+        [self.gain, self.slope, self.softened, self.share, self.resistance, self.reach]
+    }
+}
+
+/// What holds for a whole step of one element: without slip p = gain·u + stuck, and a suspension carries p + beside
+/// against friction.
+#[derive(Debug, Clone, Copy)]
+pub struct Prepared<L> {
+    held: Held<L>,
+    stuck: L,
+    beside: L,
+}
+
 impl<L: Lane> Prepared<L> {
     /// Of an element that does nothing.
     #[inline(always)]
     pub fn nothing() -> Self {
-        let zero = L::splat(0.0);
-        Prepared { gain: zero, stuck: zero, beside: zero, share: zero, resistance: zero, reach: zero }
+        Prepared { held: Held::nothing(), stuck: L::splat(0.0), beside: L::splat(0.0) }
     }
 }
 
@@ -327,23 +397,29 @@ impl<L: Lane> Rubbing<L> {
         }
     }
 
-    /// What holds for a whole step.
+    /// What follows from the compliance alone.
     #[inline(always)]
-    fn prepare(&self, compliance: L, before: &Stroke<L>) -> Prepared<L> {
+    fn hold(&self, compliance: L) -> Held<L> {
         let gain = if self.moves { L::splat(1.0) / compliance } else { L::splat(0.0) };
-        Prepared { gain, stuck: self.initial - gain * before.shortening, ..Prepared::nothing() }
+        Held { gain, ..Held::nothing() }
+    }
+
+    /// The rest that holds for a whole step.
+    #[inline(always)]
+    fn prepare(&self, held: Held<L>, before: &Stroke<L>) -> Prepared<L> {
+        Prepared { stuck: self.initial - held.gain * before.shortening, beside: L::splat(0.0), held }
     }
 
     /// Friction force for shortening u − S (f − f₀).
     #[inline(always)]
     fn friction(&self, trial: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
-        if self.moves { self.law.friction(trial, prepared.gain, before) } else { before.friction }
+        if self.moves { self.law.friction(trial, prepared.held.gain, before) } else { before.friction }
     }
 
     /// The same as force increment.
     #[inline(always)]
     fn solve(&self, u: L, prepared: &Prepared<L>, before: &Stroke<L>) -> L {
-        self.friction(prepared.gain * u + prepared.stuck, prepared, before) - self.initial
+        self.friction(prepared.held.gain * u + prepared.stuck, prepared, before) - self.initial
     }
 
     /// The element at the end of a step.
@@ -352,10 +428,29 @@ impl<L: Lane> Rubbing<L> {
         if !self.moves {
             return *before;
         }
-        let trial = prepared.gain * u + prepared.stuck;
+        let trial = prepared.held.gain * u + prepared.stuck;
         let friction = self.friction(trial, prepared, before);
         let shortening = before.shortening + (trial - friction) * compliance;
         Stroke { shortening, rate: before.rate, friction }
+    }
+}
+
+/// What a caller knows of the elements; in literals, loops over them run a known number of times.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Known {
+    /// Number of contacts.
+    pub contacts: usize,
+    /// Number of friction elements.
+    pub rubbing: usize,
+    /// Whether all contacts are massless axles with rigid Coulomb friction and without dampers.
+    pub coulomb: bool,
+}
+
+impl Known {
+    /// Number of elements.
+    #[inline(always)]
+    pub fn all(self) -> usize {
+        self.contacts + self.rubbing
     }
 }
 
@@ -377,15 +472,48 @@ impl<L: Lane> Elements<L> {
         Elements { contacts, rubbing, tolerance: weight * L::splat(SETTLED) }
     }
 
-    /// Number of contacts and of friction elements.
+    /// What there is to know of them.
+    pub fn known(&self) -> Known {
+        let coulomb = self.contacts.iter().all(Contact::is_coulomb);
+        Known { contacts: self.contacts.len(), rubbing: self.rubbing.len(), coulomb }
+    }
+
+    /// What holds of all elements with a compliance S, by rows: [`HELD`] of each. What is
+    /// `known` is said again by callers who know it.
     #[inline(always)]
-    pub fn counts(&self) -> [usize; 2] {
-        [self.contacts.len(), self.rubbing.len()]
+    pub fn hold(&self, known: Known, compliance: &[L], held: &mut [L]) {
+        let (contacts, n) = (known.contacts, known.all());
+        let (compliance, held) = (&compliance[..n * n], &mut held[..n * HELD]);
+        let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..known.rubbing]);
+        for k in 0..n {
+            let own = compliance[k * n + k];
+            let mut of = if k < contacts { wheels[k].hold(own) } else { rubbing[k - contacts].hold(own) };
+            for j in 0..k {
+                let gain = held[j * HELD];
+                of.reach = of.reach + gain * compliance[j * n + k].magnitude();
+            }
+            held[k * HELD..][..HELD].copy_from_slice(&of.numbers());
+        }
+    }
+
+    /// What holds for a whole step that begins with the strokes `before`.
+    #[inline(always)]
+    pub fn prepare(&self, known: Known, held: &[L], before: &[Stroke<L>], prepared: &mut [Prepared<L>]) {
+        let (contacts, n) = (known.contacts, known.all());
+        let (before, prepared) = (&before[..n], &mut prepared[..n]);
+        let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..known.rubbing]);
+        for k in 0..n {
+            let held = Held::of(&held[k * HELD..]);
+            prepared[k] = if k < contacts {
+                wheels[k].prepare(held, &before[k], known.coulomb)
+            } else {
+                rubbing[k - contacts].prepare(held, &before[k])
+            };
+        }
     }
 
     /// Solves p_k = law_k(u_k − Σ S_kj p_j) for all elements, starting from the p given; `compliance` is S by rows, and
-    /// lanes that are `frozen` keep their p. The `counts` are those of the elements, said again for callers that know
-    /// them.
+    /// lanes that are `frozen` keep their p. What is `known` is as in [`Elements::hold`].
     ///
     /// One element after the other with its own equation solved exactly (nonlinear Gauss–Seidel): the laws rise and S
     /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
@@ -397,35 +525,23 @@ impl<L: Lane> Elements<L> {
     #[allow(clippy::too_many_arguments)] // each is one thing
     pub fn solve(
         &self,
-        counts: [usize; 2],
+        known: Known,
         u: &[L],
         compliance: &[L],
         before: &[Stroke<L>],
-        prepared: &mut [Prepared<L>],
+        prepared: &[Prepared<L>],
         p: &mut [L],
         frozen: L::Mask,
     ) -> bool {
-        let [contacts, n] = [counts[0], counts[0] + counts[1]];
+        let (contacts, n) = (known.contacts, known.all());
         let (u, compliance, before) = (&u[..n], &compliance[..n * n], &before[..n]);
-        let (prepared, p) = (&mut prepared[..n], &mut p[..n]);
-        let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..counts[1]]);
-        for k in 0..n {
-            let own = compliance[k * n + k];
-            let mut of = if k < contacts {
-                wheels[k].prepare(own, &before[k])
-            } else {
-                rubbing[k - contacts].prepare(own, &before[k])
-            };
-            for j in 0..k {
-                of.reach = of.reach + prepared[j].gain * compliance[j * n + k].magnitude();
-            }
-            prepared[k] = of;
-        }
+        let (prepared, p) = (&prepared[..n], &mut p[..n]);
+        let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..known.rubbing]);
         let mut done = frozen;
         for _ in 0..SWEEPS {
             let mut left = L::splat(0.0);
             for k in 0..n {
-                if k < contacts && wheels[k].constant {
+                if k < contacts && !known.coulomb && wheels[k].constant {
                     continue;
                 }
                 let row = &compliance[k * n..][..n];
@@ -436,12 +552,12 @@ impl<L: Lane> Elements<L> {
                     }
                 }
                 let found = if k < contacts {
-                    wheels[k].solve(others, &prepared[k], &before[k])
+                    wheels[k].solve(others, &prepared[k], &before[k], known.coulomb)
                 } else {
                     rubbing[k - contacts].solve(others, &prepared[k], &before[k])
                 };
                 let next = L::select(done, p[k], found);
-                left = left + prepared[k].reach * (next - p[k]).magnitude();
+                left = left + prepared[k].held.reach * (next - p[k]).magnitude();
                 p[k] = next;
             }
             // A single axle is exact at once; a NaN never counts as settled.
@@ -457,17 +573,17 @@ impl<L: Lane> Elements<L> {
     #[inline(always)]
     pub fn settle(
         &self,
-        counts: [usize; 2],
+        known: Known,
         u: &[L],
         compliance: &[L],
         prepared: &[Prepared<L>],
         p: &[L],
         strokes: &mut [Stroke<L>],
     ) {
-        let [contacts, n] = [counts[0], counts[0] + counts[1]];
+        let (contacts, n) = (known.contacts, known.all());
         let (prepared, p, strokes) = (&prepared[..n], &p[..n], &mut strokes[..n]);
         for (k, contact) in self.contacts[..contacts].iter().enumerate() {
-            strokes[k] = contact.settle(p[k], &prepared[k], &strokes[k]);
+            strokes[k] = contact.settle(p[k], &prepared[k], &strokes[k], known.coulomb);
         }
         for (k, rubbing) in (contacts..n).zip(&self.rubbing) {
             let row = &compliance[k * n..][..n];

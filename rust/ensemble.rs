@@ -17,7 +17,7 @@ pub mod watch;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use rayon::prelude::*;
 
@@ -366,6 +366,7 @@ impl Study {
             }
             tables.push(Arc::new(self.table(march)));
         }
+        let couplings = vec![OnceLock::new(); marches.len()];
         let order: Vec<u32> = distinct.values().flatten().copied().collect();
         let mut results = Results {
             layout,
@@ -385,8 +386,9 @@ impl Study {
                 let mut failed = Vec::new();
                 let (kind, _) = marches[march];
                 if self.shares {
+                    let (table, couplings) = (&tables[march], &couplings[march]);
                     let task =
-                        together::Task { study: self, layout, samples, kind, table: &tables[march], isa: workers.isa };
+                        together::Task { study: self, layout, samples, kind, table, couplings, isa: workers.isa };
                     task.run::<Wide<SAMPLES>>(members, &mut records, &mut failed, &go_on)?;
                 } else {
                     for (&member, record) in members.iter().zip(&mut records) {

@@ -31,7 +31,6 @@ pub struct Rig<L> {
     surge_rows: Option<Vec<L>>,
     /// Accelerations under unit forces along the road at the contacts.
     surge_receptance: Vec<L>,
-    predicted: Vec<Coordinate<L>>,
     /// Accelerations without element forces; zero while nothing but those acts.
     free: Vec<L>,
     /// The end of the step without element forces.
@@ -77,7 +76,6 @@ impl<L: Lane> Rig<L> {
             rows: rows.iter().flat_map(|row| row.iter().copied().map(L::splat)).collect(),
             surge_rows: surge_rows.iter().any(|row| row.iter().any(|&v| v != 0.0)).then(|| flat(&surge_rows)),
             surge_receptance: flat(&surge_receptance),
-            predicted: vec![Coordinate::rest(); size],
             free: vec![zero; size],
             unloaded: vec![Coordinate::rest(); size],
             resisting: vec![zero; size],
@@ -109,7 +107,6 @@ impl<L: Lane> Rig<L> {
             coupling: of(&|rig| &rig.coupling),
             surge_rows: some(&|rig| rig.surge_rows.as_ref()),
             surge_receptance: of(&|rig| &rig.surge_receptance),
-            predicted: vec![Coordinate::rest(); first.size],
             free: vec![L::splat(0.0); first.size],
             unloaded: vec![Coordinate::rest(); first.size],
             resisting: vec![L::splat(0.0); first.size],
@@ -126,11 +123,17 @@ impl<L: Lane> Rig<L> {
         self.surge_rows.is_some()
     }
 
-    /// Begins a step, `passive` if nothing but element forces acts on the coordinates in it.
+    /// Begins a step, `passive` if nothing but element forces acts on the coordinates in it; `predicted` is where they
+    /// would be at its end if their accelerations there were zero.
     #[inline(always)]
-    pub fn predict(&mut self, newmark: &Newmark<L>, state: &[Coordinate<L>], passive: bool) {
+    pub fn predict(
+        &mut self,
+        newmark: &Newmark<L>,
+        state: &[Coordinate<L>],
+        predicted: &mut [Coordinate<L>],
+        passive: bool,
+    ) {
         let size = state.len();
-        let predicted = &mut self.predicted[..size];
         for (predicted, c) in predicted.iter_mut().zip(state) {
             *predicted = newmark.predict(*c);
         }
@@ -151,7 +154,7 @@ impl<L: Lane> Rig<L> {
 
     /// Works out the step without element forces, under forces along the road at the contacts [N].
     #[inline(always)]
-    pub fn surge(&mut self, newmark: &Newmark<L>, along: &[L]) {
+    pub fn surge(&mut self, newmark: &Newmark<L>, predicted: &[Coordinate<L>], along: &[L]) {
         let size = self.size;
         let free = &mut self.free[..size];
         for (i, free) in free.iter_mut().enumerate() {
@@ -169,15 +172,21 @@ impl<L: Lane> Rig<L> {
                 }
             }
         }
-        for ((unloaded, predicted), a) in self.unloaded.iter_mut().zip(&self.predicted).zip(free.iter()) {
+        for ((unloaded, predicted), a) in self.unloaded.iter_mut().zip(predicted).zip(free.iter()) {
             *unloaded = newmark.correct(*predicted, *a);
         }
     }
 
     /// How an element's shortening follows from the coordinates, and what they are without element forces.
     #[inline(always)]
-    pub fn unloaded(&self, element: usize, size: usize, passive: bool) -> impl Iterator<Item = (&L, &Coordinate<L>)> {
-        let unloaded = if passive { &self.predicted[..size] } else { &self.unloaded[..size] };
+    pub fn unloaded<'s>(
+        &'s self,
+        element: usize,
+        predicted: &'s [Coordinate<L>],
+        passive: bool,
+    ) -> impl Iterator<Item = (&'s L, &'s Coordinate<L>)> {
+        let size = predicted.len();
+        let unloaded = if passive { predicted } else { &self.unloaded[..size] };
         self.rows[element * size..][..size].iter().zip(unloaded)
     }
 
@@ -191,13 +200,12 @@ impl<L: Lane> Rig<L> {
     pub fn correct(
         &self,
         newmark: &Newmark<L>,
-        contacts: &[L],
-        frictions: &[L],
+        predicted: &[Coordinate<L>],
+        [contacts, frictions]: [&[L]; 2],
         state: &mut [Coordinate<L>],
         passive: bool,
     ) {
         let size = state.len();
-        let predicted = &self.predicted[..size];
         let receptance = &self.receptance[..(contacts.len() + frictions.len()) * size];
         for (i, (state, predicted)) in state.iter_mut().zip(predicted).enumerate() {
             let mut a = if passive { L::splat(0.0) } else { self.free[i] };
@@ -225,8 +233,13 @@ impl<L: Lane> Rig<L> {
 
     /// The coordinates at the end of the step if their accelerations stayed as they were in `state`.
     #[inline(always)]
-    pub fn guess(&self, newmark: &Newmark<L>, state: &[Coordinate<L>], guess: &mut [Coordinate<L>]) {
-        for ((guess, predicted), before) in guess.iter_mut().zip(&self.predicted).zip(state) {
+    pub fn guess(
+        newmark: &Newmark<L>,
+        predicted: &[Coordinate<L>],
+        state: &[Coordinate<L>],
+        guess: &mut [Coordinate<L>],
+    ) {
+        for ((guess, predicted), before) in guess.iter_mut().zip(predicted).zip(state) {
             *guess = newmark.correct(*predicted, before.a);
         }
     }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::assembly::Assembly;
-use crate::contact::{Contact, Elements, Prepared, Rubbing};
+use crate::contact::{Contact, Elements, HELD, Known, Prepared, Rubbing};
 use crate::friction::Stroke;
 use crate::lane::Lane;
 use crate::modal::{ModalDamping, ModalSolve};
@@ -70,6 +70,11 @@ pub trait Geometry<L: Lane> {
 
     /// The road under the contact.
     fn surface(&self, contact: usize) -> Surface<L>;
+
+    /// The [`Stepper::coupling`] of this place, where it is known: the same in all lanes.
+    fn coupling(&self) -> Option<&[f64]> {
+        None
+    }
 }
 
 /// The state of bridge and vehicles at one instant.
@@ -189,9 +194,7 @@ impl Unsettled {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Form {
     modes: usize,
-    contacts: usize,
-    /// Friction elements.
-    rubbing: usize,
+    elements: Known,
     vehicles: usize,
     /// Coordinates of all vehicles.
     coordinates: usize,
@@ -205,11 +208,10 @@ struct Form {
     passive: bool,
 }
 
-/// One rigid body on two axles without mass, on a bridge of three modes.
+/// One rigid body on two axles without mass, with Coulomb friction, on a bridge of three modes.
 const USUAL: Form = Form {
     modes: 3,
-    contacts: 2,
-    rubbing: 0,
+    elements: Known { contacts: 2, rubbing: 0, coulomb: true },
     vehicles: 1,
     coordinates: 2,
     plain: true,
@@ -223,11 +225,9 @@ const USUAL_APPROACH: Form = Form { modes: 0, ..USUAL };
 
 impl Form {
     fn of<L: Lane>(modal: &ModalSolve<L>, units: &[Unit<L>], elements: &Elements<L>) -> Self {
-        let [contacts, rubbing] = elements.counts();
         Form {
             modes: modal.modes(),
-            contacts,
-            rubbing,
+            elements: elements.known(),
             vehicles: units.len(),
             coordinates: units.last().map_or(0, |unit| unit.coordinates.end),
             plain: elements.contacts.iter().all(|contact| contact.weights.plain),
@@ -237,23 +237,36 @@ impl Form {
         }
     }
 
-    /// Number of contacts and friction elements.
+    /// Number of contacts.
     #[inline(always)]
-    fn counts(self) -> [usize; 2] {
-        [self.contacts, self.rubbing]
+    const fn contacts(self) -> usize {
+        self.elements.contacts
     }
 
     /// Number of elements.
     #[inline(always)]
-    fn elements(self) -> usize {
-        self.contacts + self.rubbing
+    const fn all(self) -> usize {
+        self.elements.contacts + self.elements.rubbing
+    }
+
+    /// Where each part of a [`Coupling`] begins, and where the last ends.
+    #[inline(always)]
+    const fn parts(self) -> [usize; 5] {
+        let (each, n) = (self.contacts() * self.modes, self.all());
+        [each, 2 * each, 3 * each, 3 * each + n * n, 3 * each + n * n + n * HELD]
+    }
+
+    /// How many numbers a [`Coupling`] has.
+    #[inline(always)]
+    const fn width(self) -> usize {
+        self.parts()[4]
     }
 
     /// Contacts, friction elements and coordinates of a vehicle.
     #[inline(always)]
     fn part<L>(self, unit: &Unit<L>) -> [Range<usize>; 3] {
         match self.vehicles {
-            1 => [0..self.contacts, self.contacts..self.elements(), 0..self.coordinates],
+            1 => [0..self.contacts(), self.contacts()..self.all(), 0..self.coordinates],
             _ => [unit.contacts.clone(), unit.rubbing.clone(), unit.coordinates.clone()],
         }
     }
@@ -273,28 +286,113 @@ pub struct Stepper<L> {
     travel: Vec<Coordinate<L>>,
     guess: Vec<Coordinate<L>>,
     along: Vec<L>,
-    predicted: Vec<Coordinate<L>>,
+    /// The coupling without a bridge, which is the same everywhere.
+    alone: Vec<L>,
+    room: Room<Vec<Coordinate<L>>, Vec<L>, Vec<Prepared<L>>>,
+}
+
+/// Room to work in for a step, of any kind that can be taken as slices: arrays where their size is known, so that what is
+/// in them need not be written to memory.
+#[derive(Debug, Clone, Default)]
+struct Room<C, N, P> {
+    /// Modes and vehicles at the end of the step if accelerations there were zero.
+    predicted: C,
+    bodies: C,
     /// Forces with which the modes resist as predicted.
-    resisting: Vec<L>,
+    resisting: N,
     /// Modal forces under the static axle loads, and accelerations.
-    forces: Vec<L>,
-    accelerations: Vec<L>,
+    forces: N,
+    accelerations: N,
     /// The end of the step under the static axle loads.
-    loaded: Vec<Coordinate<L>>,
+    loaded: C,
+    /// What unit modal accelerations do to δ of a contact.
+    senses: N,
+    coupling: N,
+    /// What the elements follow, but for the increments of the forces.
+    offset: N,
+    prepared: P,
+}
+
+/// The room that is borrowed for a step.
+type Desk<'r, L> = Room<&'r mut [Coordinate<L>], &'r mut [L], &'r mut [Prepared<L>]>;
+
+impl<C, N, P> Room<C, N, P> {
+    #[inline(always)]
+    fn desk<L>(&mut self) -> Desk<'_, L>
+    where
+        C: AsMut<[Coordinate<L>]>,
+        N: AsMut<[L]>,
+        P: AsMut<[Prepared<L>]>,
+    {
+        Room {
+            predicted: self.predicted.as_mut(),
+            bodies: self.bodies.as_mut(),
+            resisting: self.resisting.as_mut(),
+            forces: self.forces.as_mut(),
+            accelerations: self.accelerations.as_mut(),
+            loaded: self.loaded.as_mut(),
+            senses: self.senses.as_mut(),
+            coupling: self.coupling.as_mut(),
+            offset: self.offset.as_mut(),
+            prepared: self.prepared.as_mut(),
+        }
+    }
+}
+
+/// Room for the usual forms.
+type UsualRoom<L> = Room<[Coordinate<L>; USUAL.modes], [L; USUAL.width()], [Prepared<L>; USUAL.all()]>;
+
+impl<L: Lane> UsualRoom<L> {
+    #[inline(always)]
+    fn usual() -> Self {
+        let (rest, zeros) = ([Coordinate::rest(); USUAL.modes], [L::splat(0.0); USUAL.width()]);
+        Room {
+            predicted: rest,
+            bodies: rest,
+            resisting: zeros,
+            forces: zeros,
+            accelerations: zeros,
+            loaded: rest,
+            senses: zeros,
+            coupling: zeros,
+            offset: zeros,
+            prepared: [Prepared::nothing(); USUAL.all()],
+        }
+    }
+}
+
+/// How the contacts feel the bridge and each other where they stand: what a step needs that depends on the geometry and
+/// the parameters alone, not on the state.
+struct Coupling<'r, L> {
     /// Φ⁰, contact by contact.
-    shapes: Vec<L>,
-    /// What unit modal accelerations do to δ, contact by contact.
-    senses: Vec<L>,
+    shapes: &'r [L],
+    /// Modal forces under the static axle loads, contact by contact.
+    pressing: &'r [L],
     /// Modal accelerations under unit axle loads, contact by contact.
-    receptance: Vec<L>,
-    compliance: Vec<L>,
-    offset: Vec<L>,
-    prepared: Vec<Prepared<L>>,
+    receptance: &'r [L],
+    /// What the increments of the forces take off what the elements follow, by rows.
+    compliance: &'r [L],
+    /// What holds of each element.
+    held: &'r [L],
+}
+
+impl<'r, L> Coupling<'r, L> {
+    #[inline(always)]
+    fn of(form: Form, numbers: &'r [L]) -> Self {
+        let [a, b, c, d, e] = form.parts();
+        Coupling {
+            shapes: &numbers[..a],
+            pressing: &numbers[a..b],
+            receptance: &numbers[b..c],
+            compliance: &numbers[c..d],
+            held: &numbers[d..e],
+        }
+    }
 }
 
 /// What the vehicles add to the compliance of the elements, by rows.
 fn above<L: Lane>(newmark: &Newmark<L>, units: &[Unit<L>], elements: &Elements<L>) -> Vec<L> {
-    let n: usize = elements.counts().iter().sum();
+    let n = elements.known().all();
     let mut above = vec![L::splat(0.0); n * n];
     // A vehicle without coordinates adds nothing.
     for unit in units.iter().filter(|unit| unit.rig.size > 0) {
@@ -356,32 +454,44 @@ impl<L: Lane> Stepper<L> {
         surge_settled: L,
     ) -> Self {
         let form = Form::of(&modal, &units, &elements);
-        let Form { modes, contacts, .. } = form;
-        let n = form.elements();
+        let (modes, contacts, n) = (form.modes, form.contacts(), form.all());
         let zeros = |count: usize| vec![L::splat(0.0); count];
         let rest = |count: usize| vec![Coordinate::rest(); count];
-        Stepper {
+        let mut stepper = Stepper {
             above: above(&newmark, &units, &elements),
             travel: rest(units.len()),
             guess: rest(form.coordinates),
             along: zeros(contacts),
-            predicted: rest(modes),
-            resisting: zeros(modes),
-            forces: zeros(modes),
-            accelerations: zeros(modes),
-            loaded: rest(modes),
-            shapes: zeros(modes * contacts),
-            senses: zeros(modes * contacts),
-            receptance: zeros(modes * contacts),
-            compliance: zeros(n * n),
-            offset: zeros(n),
-            prepared: vec![Prepared::nothing(); n],
+            alone: Vec::new(),
+            room: Room {
+                predicted: rest(modes),
+                bodies: rest(form.coordinates),
+                resisting: zeros(modes),
+                forces: zeros(modes),
+                accelerations: zeros(modes),
+                loaded: rest(modes),
+                senses: zeros(modes),
+                coupling: zeros(form.width()),
+                offset: zeros(n),
+                prepared: vec![Prepared::nothing(); n],
+            },
             form,
             newmark,
             modal,
             units,
             elements,
             surge_settled,
+        };
+        stepper.stand_alone();
+        stepper
+    }
+
+    /// Works out how the elements are coupled without a bridge, if there is none.
+    fn stand_alone(&mut self) {
+        if self.form.modes == 0 {
+            let mut alone = vec![L::splat(0.0); self.form.width()];
+            self.press(self.form, &mut alone);
+            self.alone = alone;
         }
     }
 
@@ -398,14 +508,16 @@ impl<L: Lane> Stepper<L> {
             modes: vec![Coordinate::rest(); form.modes],
             coordinates: vec![Coordinate::rest(); form.coordinates],
             travel: speeds.iter().map(|&v| Coordinate { x: zero, v, a: zero }).collect(),
-            increments: vec![zero; form.elements()],
+            increments: vec![zero; form.all()],
             strokes: contacts.chain(self.elements.rubbing.iter().map(|r| r.at_rest())).collect(),
-            along: vec![zero; form.contacts],
-            along_before: vec![zero; form.contacts],
+            along: vec![zero; form.contacts()],
+            along_before: vec![zero; form.contacts()],
         };
-        self.predict(form, &state);
-        self.push_along(form, &mut state, geometry);
-        self.react(form, &mut state, geometry, L::never())?;
+        let mut room = self.room.clone();
+        let mut desk = room.desk();
+        self.predict(form, &state, &mut desk);
+        self.push_along(form, &mut state, geometry, &desk);
+        self.react(form, &mut state, geometry, L::never(), None, &mut desk)?;
         // The loads of the first instant do not depend on how the vehicles surge under them.
         for (u, unit) in self.units.iter_mut().enumerate().filter(|(_, unit)| unit.propulsion == Propulsion::Rolling) {
             let mut force = zero;
@@ -414,10 +526,11 @@ impl<L: Lane> Stepper<L> {
                 force = force + state.along[contact];
             }
             state.travel[u].a = force / unit.rig.total_mass;
-            unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
+            let bodies = &desk.bodies[unit.coordinates.clone()];
+            unit.rig.surge(&self.newmark, bodies, &state.along[unit.contacts.clone()]);
         }
-        self.react(form, &mut state, geometry, L::never())?;
-        for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&self.offset) {
+        self.react(form, &mut state, geometry, L::never(), None, &mut desk)?;
+        for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&*desk.offset) {
             *stroke = contact.at_onset(*delta);
         }
         state.along_before.copy_from_slice(&state.along);
@@ -476,6 +589,15 @@ impl<L: Lane> Stepper<L> {
         self.units[vehicle].propulsion = Propulsion::Prescribed;
         self.above = above(&self.newmark, &self.units, &self.elements);
         self.form = Form::of(&self.modal, &self.units, &self.elements);
+        self.stand_alone();
+    }
+
+    /// How the contacts feel the bridge where `geometry` has them, as numbers for [`Geometry::coupling`].
+    pub fn coupling(&mut self, geometry: &impl Geometry<L>) -> &[L] {
+        let mut room = std::mem::take(&mut self.room);
+        self.couple(self.form, geometry, &mut room.desk());
+        self.room = room;
+        &self.room.coupling
     }
 
     /// Puts a vehicle's brakes on, or says how far they are.
@@ -490,23 +612,39 @@ impl<L: Lane> Stepper<L> {
             return self.roll(state, geometry);
         }
         let form = Form { passive: self.form.passive || self.form.bare && geometry.steady(), ..self.form };
-        match form {
-            USUAL => self.drive(USUAL, state, geometry),
-            USUAL_APPROACH => self.drive(USUAL_APPROACH, state, geometry),
-            form => self.drive(form, state, geometry),
+        geometry.advance();
+        let geometry = &*geometry;
+        let mut usual = Room::usual();
+        match (form, geometry.coupling()) {
+            (USUAL_APPROACH, _) => self.drive(USUAL_APPROACH, state, geometry, None, &mut usual.desk()),
+            (USUAL, Some(known)) => self.drive(USUAL, state, geometry, Some(known), &mut usual.desk()),
+            (USUAL, None) => self.drive(USUAL, state, geometry, None, &mut usual.desk()),
+            (form, known) => {
+                let mut room = std::mem::take(&mut self.room);
+                let driven = self.drive(form, state, geometry, known, &mut room.desk());
+                self.room = room;
+                driven
+            }
         }
     }
 
-    /// One step of vehicles all of whose motion is prescribed.
+    /// One step of vehicles all of whose motion is prescribed, to where `geometry` has them; with the coupling there, if
+    /// that is `known`.
     #[inline(always)]
-    fn drive(&mut self, form: Form, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
-        self.predict(form, state);
-        geometry.advance();
+    fn drive(
+        &mut self,
+        form: Form,
+        state: &mut State<L>,
+        geometry: &impl Geometry<L>,
+        known: Option<&[f64]>,
+        desk: &mut Desk<'_, L>,
+    ) -> Result<(), Unsettled> {
+        self.predict(form, state, desk);
         if !form.passive {
-            self.push_along(form, state, geometry);
+            self.push_along(form, state, geometry, desk);
         }
-        self.react(form, state, geometry, L::never())?;
-        self.settle(form, state);
+        self.react(form, state, geometry, L::never(), known, desk)?;
+        self.settle(form, state, desk);
         Ok(())
     }
 
@@ -515,23 +653,37 @@ impl<L: Lane> Stepper<L> {
     #[inline(never)]
     fn roll(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
         let form = self.form;
-        self.predict(form, state);
+        let mut room = std::mem::take(&mut self.room);
+        let rolled = self.roll_at(form, state, geometry, &mut room.desk());
+        self.room = room;
+        rolled
+    }
+
+    fn roll_at(
+        &mut self,
+        form: Form,
+        state: &mut State<L>,
+        geometry: &mut impl Geometry<L>,
+        desk: &mut Desk<'_, L>,
+    ) -> Result<(), Unsettled> {
+        self.predict(form, state, desk);
         geometry.advance();
         self.guess_along(state);
         for (u, unit) in self.units.iter().enumerate() {
             self.travel[u] = self.newmark.predict(state.travel[u]);
             if unit.propulsion == Propulsion::Rolling {
                 let guess = &mut self.guess[..unit.rig.size];
-                unit.rig.guess(&self.newmark, &state.coordinates[unit.coordinates.clone()], guess);
+                let coordinates = unit.coordinates.clone();
+                Rig::guess(&self.newmark, &desk.bodies[coordinates.clone()], &state.coordinates[coordinates], guess);
                 let force = unit.contacts.clone().fold(L::splat(0.0), |sum, contact| sum + state.along[contact]);
                 let travel = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
                 place(unit, travel, guess, geometry, true);
             }
         }
-        self.push_along(form, state, geometry);
+        self.push_along(form, state, geometry, desk);
         let mut settled = L::never();
         for _ in 0..PASSES {
-            self.react(form, state, geometry, settled)?;
+            self.react(form, state, geometry, settled, None, desk)?;
             let mut moving = L::never();
             for (u, unit) in self.units.iter().enumerate() {
                 if unit.propulsion != Propulsion::Rolling {
@@ -552,14 +704,15 @@ impl<L: Lane> Stepper<L> {
             // A settled lane is left as it is, so that further passes repeat it bit for bit.
             settled = !moving;
             if L::all(settled) {
-                self.settle(form, state);
+                self.settle(form, state, desk);
                 return Ok(());
             }
             for unit in self.units.iter_mut().filter(|unit| unit.propulsion == Propulsion::Rolling) {
                 for contact in unit.contacts.clone() {
                     state.along[contact] = L::select(moving, self.along[contact], state.along[contact]);
                 }
-                unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
+                let bodies = &desk.bodies[unit.coordinates.clone()];
+                unit.rig.surge(&self.newmark, bodies, &state.along[unit.contacts.clone()]);
             }
         }
         Err(Unsettled::AxlePositions)
@@ -567,16 +720,17 @@ impl<L: Lane> Stepper<L> {
 
     /// Everything at the end of the step if accelerations there were zero, and how the modes resist that.
     #[inline(always)]
-    fn predict(&mut self, form: Form, state: &State<L>) {
+    fn predict(&mut self, form: Form, state: &State<L>, desk: &mut Desk<'_, L>) {
         for unit in &mut self.units[..form.vehicles] {
             let [_, _, coordinates] = form.part(unit);
-            unit.rig.predict(&self.newmark, &state.coordinates[coordinates], form.passive);
+            let bodies = &mut desk.bodies[coordinates.clone()];
+            unit.rig.predict(&self.newmark, &state.coordinates[coordinates], bodies, form.passive);
         }
-        let predicted = &mut self.predicted[..form.modes];
+        let predicted = &mut desk.predicted[..form.modes];
         for (predicted, mode) in predicted.iter_mut().zip(&state.modes[..form.modes]) {
             *predicted = self.newmark.predict(*mode);
         }
-        self.modal.resist(form.classical, predicted, &mut self.resisting[..form.modes]);
+        self.modal.resist(form.classical, predicted, &mut desk.resisting[..form.modes]);
     }
 
     /// Forces along the road as they go on from the last two steps, where vehicles roll.
@@ -593,18 +747,20 @@ impl<L: Lane> Stepper<L> {
 
     /// Forces along the road to begin with: those that prescribed motion takes, or those of the last step.
     #[inline(always)]
-    fn push_along(&mut self, form: Form, state: &mut State<L>, geometry: &impl Geometry<L>) {
+    fn push_along(&mut self, form: Form, state: &mut State<L>, geometry: &impl Geometry<L>, desk: &Desk<'_, L>) {
         for unit in &mut self.units[..form.vehicles] {
             if unit.propulsion == Propulsion::Prescribed {
                 for (contact, share) in unit.contacts.clone().zip(&unit.shares) {
                     state.along[contact] = L::splat(unit.direction) * geometry.motion(contact).a * *share;
                 }
             }
-            unit.rig.surge(&self.newmark, &state.along[unit.contacts.clone()]);
+            let bodies = &desk.bodies[unit.coordinates.clone()];
+            unit.rig.surge(&self.newmark, bodies, &state.along[unit.contacts.clone()]);
         }
     }
 
-    /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`.
+    /// Solves for the unknown forces and moves bridge and vehicles accordingly, in lanes that are not `frozen`; with
+    /// the coupling where `geometry` has the contacts, if that is `known`.
     #[inline(always)]
     fn react(
         &mut self,
@@ -612,65 +768,145 @@ impl<L: Lane> Stepper<L> {
         state: &mut State<L>,
         geometry: &impl Geometry<L>,
         frozen: L::Mask,
+        known: Option<&[f64]>,
+        desk: &mut Desk<'_, L>,
     ) -> Result<(), Unsettled> {
-        self.sense(form, geometry);
-        self.couple(form);
-        self.sit(form);
-        let (prepared, increments) = (&mut self.prepared, &mut state.increments);
-        let (offset, compliance) = (&self.offset, &self.compliance);
-        if !self.elements.solve(form.counts(), offset, compliance, &state.strokes, prepared, increments, frozen) {
+        match known {
+            _ if form.modes == 0 => desk.coupling[..form.width()].copy_from_slice(&self.alone[..form.width()]),
+            Some(numbers) => {
+                for (own, number) in desk.coupling[..form.width()].iter_mut().zip(&numbers[..form.width()]) {
+                    *own = L::splat(*number);
+                }
+            }
+            None => self.couple(form, geometry, desk),
+        }
+        self.sense(form, geometry, desk);
+        self.sit(form, desk);
+        let Coupling { compliance, held, receptance, .. } = Coupling::of(form, desk.coupling);
+        let (prepared, increments, strokes) = (&mut *desk.prepared, &mut state.increments, &state.strokes);
+        self.elements.prepare(form.elements, held, strokes, prepared);
+        if !self.elements.solve(form.elements, desk.offset, compliance, strokes, prepared, increments, frozen) {
             return Err(Unsettled::ContactForces);
         }
-        self.move_bridge(form, state);
+        for (m, mode) in state.modes[..form.modes].iter_mut().enumerate() {
+            let mut a = desk.loaded[..form.modes][m].a;
+            for (k, increment) in increments[..form.contacts()].iter().enumerate() {
+                a = a + receptance[k * form.modes + m] * *increment;
+            }
+            *mode = self.newmark.correct(desk.predicted[..form.modes][m], a);
+        }
         for unit in &self.units[..form.vehicles] {
             let [contacts, rubbing, coordinates] = form.part(unit);
             let forces = [&state.increments[contacts], &state.increments[rubbing]];
-            unit.rig.correct(&self.newmark, forces[0], forces[1], &mut state.coordinates[coordinates], form.passive);
+            let (bodies, state) = (&desk.bodies[coordinates.clone()], &mut state.coordinates[coordinates]);
+            unit.rig.correct(&self.newmark, bodies, forces, state, form.passive);
         }
         Ok(())
     }
 
     /// Commits the suspensions to the end of the step; what moves as prescribed goes on.
     #[inline(always)]
-    fn settle(&self, form: Form, state: &mut State<L>) {
-        let (offset, compliance, prepared) = (&self.offset, &self.compliance, &self.prepared);
-        self.elements.settle(form.counts(), offset, compliance, prepared, &state.increments, &mut state.strokes);
+    fn settle(&self, form: Form, state: &mut State<L>, desk: &Desk<'_, L>) {
+        let compliance = Coupling::of(form, desk.coupling).compliance;
+        let (increments, strokes) = (&state.increments, &mut state.strokes);
+        self.elements.settle(form.elements, desk.offset, compliance, desk.prepared, increments, strokes);
+    }
+
+    /// Works out how the contacts feel the bridge where they stand.
+    #[inline(always)]
+    fn couple(&self, form: Form, geometry: &impl Geometry<L>, desk: &mut Desk<'_, L>) {
+        let (modes, contacts, n) = (form.modes, form.contacts(), form.all());
+        let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
+        let [pressing, receptance, compliance, ..] = form.parts();
+        let elements = &self.elements.contacts[..contacts];
+        let numbers = &mut desk.coupling[..form.width()];
+        for (k, contact) in elements.iter().enumerate() {
+            let (shapes, rest) = numbers.split_at_mut(pressing);
+            let (own, first) = (&mut shapes[k * modes..][..modes], k * modes);
+            geometry.shapes(k, own);
+            for (force, shape) in rest[first..][..modes].iter_mut().zip(own.iter()) {
+                *force = *shape * contact.static_load;
+            }
+            self.modal.apply(form.classical, own, &mut rest[receptance - pressing + first..][..modes]);
+        }
+        for (k, contact) in elements.iter().enumerate() {
+            let (weights, own) = (contact.weights, &numbers[k * modes..][..modes]);
+            let senses = &mut desk.senses[..modes];
+            if !form.elements.coulomb && contact.constant {
+                senses.fill(L::splat(0.0));
+            } else if form.plain || weights.plain {
+                for (sense, shape) in senses.iter_mut().zip(own) {
+                    *sense = beta_h2 * *shape;
+                }
+            } else {
+                let Coordinate { v, a, .. } = geometry.motion(k);
+                let v2 = v * v;
+                for (m, (sense, &shape)) in senses.iter_mut().zip(own).enumerate() {
+                    let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
+                    let convected = v2 * curvature + a * slope;
+                    *sense = weights.value * (beta_h2 * shape)
+                        + weights.rate * (half_h * shape + beta_h2 * v * slope)
+                        + weights.acceleration * (shape + h * v * slope + beta_h2 * convected);
+                }
+            }
+            for j in 0..contacts {
+                let mut sum = self.above[..n * n][k * n + j];
+                for (sense, r) in senses.iter().zip(&numbers[receptance + j * modes..][..modes]) {
+                    sum = sum + *sense * *r;
+                }
+                numbers[compliance + k * n + j] = sum;
+            }
+        }
+        self.press(form, numbers);
+    }
+
+    /// Works out what follows from the compliance, of which the bridge's part is there already.
+    #[inline(always)]
+    fn press(&self, form: Form, numbers: &mut [L]) {
+        let n = form.all();
+        let [_, _, compliance, held, end] = form.parts();
+        let (compliance, held) = numbers[compliance..end].split_at_mut(held - compliance);
+        for k in 0..n {
+            for j in 0..n {
+                // Between contacts only a bridge adds to it.
+                if form.modes == 0 || k >= form.contacts() || j >= form.contacts() {
+                    compliance[k * n + j] = self.above[..n * n][k * n + j];
+                }
+            }
+        }
+        self.elements.hold(form.elements, compliance, held);
     }
 
     /// The bridge below the contacts: where it would be under the static loads, what it does under others.
     #[inline(always)]
-    fn sense(&mut self, form: Form, geometry: &impl Geometry<L>) {
-        let Form { modes, contacts, .. } = form;
-        let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
-        let (shapes, senses) = (&mut self.shapes[..contacts * modes], &mut self.senses[..contacts * modes]);
-        let (forces, receptance) = (&mut self.forces[..modes], &mut self.receptance[..contacts * modes]);
-        let (loaded, offset) = (&mut self.loaded[..modes], &mut self.offset[..contacts]);
-        let elements = &self.elements.contacts[..contacts];
-        for (force, resisting) in forces.iter_mut().zip(&self.resisting[..modes]) {
+    fn sense(&self, form: Form, geometry: &impl Geometry<L>, desk: &mut Desk<'_, L>) {
+        let (modes, contacts) = (form.modes, form.contacts());
+        let Coupling { shapes, pressing, .. } = Coupling::of(form, desk.coupling);
+        let (forces, accelerations) = (&mut desk.forces[..modes], &mut desk.accelerations[..modes]);
+        let (loaded, offset) = (&mut desk.loaded[..modes], &mut desk.offset[..contacts]);
+        for (force, resisting) in forces.iter_mut().zip(&desk.resisting[..modes]) {
             *force = -*resisting;
         }
-        for (k, contact) in elements.iter().enumerate() {
-            let own = &mut shapes[k * modes..][..modes];
-            geometry.shapes(k, own);
-            self.modal.apply(form.classical, own, &mut receptance[k * modes..][..modes]);
-            for (force, shape) in forces.iter_mut().zip(own.iter()) {
-                *force = *force + *shape * contact.static_load;
+        for k in 0..contacts {
+            for (force, pressing) in forces.iter_mut().zip(&pressing[k * modes..][..modes]) {
+                *force = *force + *pressing;
             }
         }
-        let accelerations = &mut self.accelerations[..modes];
         self.modal.apply(form.classical, forces, accelerations);
-        for ((loaded, predicted), a) in loaded.iter_mut().zip(&self.predicted[..modes]).zip(accelerations.iter()) {
+        for ((loaded, predicted), a) in loaded.iter_mut().zip(&desk.predicted[..modes]).zip(accelerations.iter()) {
             *loaded = self.newmark.correct(*predicted, *a);
         }
-        for (k, contact) in elements.iter().enumerate().filter(|(_, contact)| !contact.constant) {
+        for (k, contact) in self.elements.contacts[..contacts].iter().enumerate() {
+            if !form.elements.coulomb && contact.constant {
+                offset[k] = L::splat(0.0);
+                continue;
+            }
             let weights = contact.weights;
             let own = &shapes[k * modes..][..modes];
-            let senses = &mut senses[k * modes..][..modes];
             let road = geometry.surface(k);
             if form.plain || weights.plain {
                 let mut sum = road.elevation;
-                for ((sense, shape), q) in senses.iter_mut().zip(own).zip(loaded.iter()) {
-                    *sense = beta_h2 * *shape;
+                for (shape, q) in own.iter().zip(loaded.iter()) {
                     sum = sum - *shape * q.x;
                 }
                 offset[k] = sum;
@@ -681,12 +917,9 @@ impl<L: Lane> Stepper<L> {
             let mut sum = weights.value * road.elevation
                 + weights.rate * v * road.slope
                 + weights.acceleration * (v2 * road.curvature + a * road.slope);
-            for (m, ((sense, &shape), q)) in senses.iter_mut().zip(own).zip(loaded.iter()).enumerate() {
+            for (m, (&shape, q)) in own.iter().zip(loaded.iter()).enumerate() {
                 let (slope, curvature) = (geometry.slope(k, m), geometry.curvature(k, m));
                 let convected = v2 * curvature + a * slope;
-                *sense = weights.value * (beta_h2 * shape)
-                    + weights.rate * (half_h * shape + beta_h2 * v * slope)
-                    + weights.acceleration * (shape + h * v * slope + beta_h2 * convected);
                 let value = shape * q.x;
                 let rate = shape * q.v + v * slope * q.x;
                 let acceleration = shape * q.a + L::splat(2.0) * v * slope * q.v + convected * q.x;
@@ -696,38 +929,19 @@ impl<L: Lane> Stepper<L> {
         }
     }
 
-    /// What the increments of the forces take off what the elements follow.
-    #[inline(always)]
-    fn couple(&mut self, form: Form) {
-        let (Form { modes, contacts, .. }, n) = (form, form.elements());
-        let (above, compliance) = (&self.above[..n * n], &mut self.compliance[..n * n]);
-        let (senses, receptance) = (&self.senses[..contacts * modes], &self.receptance[..contacts * modes]);
-        for k in 0..n {
-            for j in 0..n {
-                let mut sum = above[k * n + j];
-                if k < contacts && j < contacts {
-                    for (sense, r) in senses[k * modes..][..modes].iter().zip(&receptance[j * modes..][..modes]) {
-                        sum = sum + *sense * *r;
-                    }
-                }
-                compliance[k * n + j] = sum;
-            }
-        }
-    }
-
     /// The vehicles above the contacts, and what rubs between their parts: what the elements follow without the
     /// increments of the forces.
     #[inline(always)]
-    fn sit(&mut self, form: Form) {
-        let offset = &mut self.offset[..form.elements()];
-        offset[form.contacts..].fill(L::splat(0.0));
+    fn sit(&self, form: Form, desk: &mut Desk<'_, L>) {
+        let offset = &mut desk.offset[..form.all()];
+        offset[form.contacts()..].fill(L::splat(0.0));
         for unit in &self.units[..form.vehicles] {
             let [contacts, rubbing, coordinates] = form.part(unit);
-            let size = coordinates.len();
+            let bodies = &desk.bodies[coordinates];
             for (own, k) in contacts.chain(rubbing).enumerate() {
-                let unloaded = unit.rig.unloaded(own, size, form.passive);
+                let unloaded = unit.rig.unloaded(own, bodies, form.passive);
                 let mut sum = offset[k];
-                if form.plain || k >= form.contacts {
+                if form.plain || k >= form.contacts() {
                     for (row, q) in unloaded {
                         sum = sum + *row * q.x;
                     }
@@ -739,20 +953,6 @@ impl<L: Lane> Stepper<L> {
                 }
                 offset[k] = sum;
             }
-        }
-    }
-
-    #[inline(always)]
-    fn move_bridge(&mut self, form: Form, state: &mut State<L>) {
-        let Form { modes, contacts, .. } = form;
-        let receptance = &self.receptance[..contacts * modes];
-        let increments = &state.increments[..contacts];
-        for (m, mode) in state.modes[..modes].iter_mut().enumerate() {
-            let mut a = self.loaded[..modes][m].a;
-            for (k, increment) in increments.iter().enumerate() {
-                a = a + receptance[k * modes + m] * *increment;
-            }
-            *mode = self.newmark.correct(self.predicted[..modes][m], a);
         }
     }
 }

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use spanwise::assembly::Friction;
 use spanwise::assembly::{ContactLaw, ContactPoint};
-use spanwise::contact::{Contact, Elements, Prepared};
+use spanwise::contact::{Contact, Elements, HELD, Prepared};
 use spanwise::friction::Stroke;
 use spanwise::vehicle::Axle;
 
@@ -86,8 +86,12 @@ fn contact(axle: &Axle, static_load: f64) -> Contact<f64> {
 fn solve(wheels: &[Wheel], u: &[f64], s: &[f64], p: &mut [f64], frozen: bool) -> bool {
     let elements = Elements::new(wheels.iter().map(Wheel::contact).collect(), Vec::new());
     let strokes: Vec<Stroke<f64>> = wheels.iter().map(Wheel::stroke).collect();
+    let known = elements.known();
+    let mut held = vec![0.0; wheels.len() * HELD];
+    elements.hold(known, s, &mut held);
     let mut prepared = vec![Prepared::nothing(); wheels.len()];
-    elements.solve(elements.counts(), u, s, &strokes, &mut prepared, p, frozen)
+    elements.prepare(known, &held, &strokes, &mut prepared);
+    elements.solve(known, u, s, &strokes, &prepared, p, frozen)
 }
 
 /// Root of a rising function.
@@ -188,13 +192,13 @@ proptest! {
     fn one_axle_is_its_scalar_law(wheel in wheel(), u in -0.15..0.1_f64, share in 0.0..5.0_f64) {
         // From rigid ground to a ground five times as soft as the tyre.
         let compliance = share / wheel.axle.tyre_stiffness;
-        let prepared = wheel.contact().prepare(compliance, &wheel.stroke());
-        let p = wheel.contact().solve(u, &prepared, &wheel.stroke());
+        let prepared = wheel.contact().prepare(wheel.contact().hold(compliance), &wheel.stroke(), false);
+        let p = wheel.contact().solve(u, &prepared, &wheel.stroke(), false);
         let exact = bisect(-wheel.static_load, wheel.axle.tyre_stiffness, |p| p - wheel.law(u - compliance * p));
         prop_assert!((p - exact).abs() <= BISECTED * wheel.static_load, "{p} N, by bisection {exact} N");
 
         // The suspension it leaves behind: on the road it went where the law says, in the air it has let go.
-        let Stroke { shortening: s, friction, .. } = wheel.contact().settle(p, &prepared, &wheel.stroke());
+        let Stroke { shortening: s, friction, .. } = wheel.contact().settle(p, &prepared, &wheel.stroke(), false);
         let limit = wheel.axle.friction.limit;
         prop_assert!(friction.abs() <= limit);
         let carried = wheel.axle.suspension_stiffness * s + friction - wheel.axle.friction.initial;
@@ -274,7 +278,8 @@ fn the_axle_of_the_paper() {
         (-0.05, -4.8 - 0.04 * series),
         (-1.0, -32.04),
     ] {
-        let p = contact.solve(feet * foot, &contact.prepare(0.0, &contact.at_rest()), &contact.at_rest());
+        let rest = contact.at_rest();
+        let p = contact.solve(feet * foot, &contact.prepare(contact.hold(0.0), &rest, false), &rest, false);
         assert!((p - kilopounds * 1e3 * POUND).abs() <= BISECTED * axle.friction.limit, "{feet} ft: {p} N");
     }
 }

@@ -9,10 +9,42 @@ use super::table::{Below, CHUNK, Chunk, Table};
 use super::watch::{Glance, Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
+use crate::path::Share;
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
 use crate::road::spline::weighted;
 use crate::step::{Geometry, State, Stepper, Surface, Unsettled};
+
+/// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
+const COUPLED: usize = 1 << 21;
+
+/// What the steps of samples that are alike need to know about the places of the axles on the bridge: by rows of a table,
+/// from the first with an axle on it.
+#[derive(Debug, Clone, Default)]
+pub struct Couplings {
+    width: usize,
+    numbers: Vec<f64>,
+}
+
+impl Couplings {
+    /// Of samples with this speed [m/s], as their step works it out; none if that is too much.
+    pub fn new(table: &Table, stepper: &mut Stepper<f64>, speed: f64) -> Self {
+        let road = [0.0];
+        let mut geometry = Shared::new(table, &road, speed, None);
+        let mut couplings = Couplings::default();
+        for row in table.first..=table.last() {
+            geometry.row = row;
+            geometry.step = row;
+            let coupling = stepper.coupling(&geometry);
+            couplings.width = coupling.len();
+            if couplings.width * (table.last() + 1 - table.first) > COUPLED {
+                return Couplings::default();
+            }
+            couplings.numbers.extend_from_slice(coupling);
+        }
+        couplings
+    }
+}
 
 /// The shared table, with the roads and speeds of a group of samples.
 #[derive(Debug, Clone)]
@@ -21,6 +53,8 @@ pub struct Shared<'a, L> {
     /// Coefficients of the samples' own roads.
     road: &'a [L],
     speed: L,
+    /// Where all lanes are alike, how the axles feel the bridge, by row from the first with one on it.
+    couplings: Option<&'a Couplings>,
     /// The step, and where the table has it.
     step: usize,
     row: usize,
@@ -30,10 +64,11 @@ pub struct Shared<'a, L> {
 impl<'a, L: Lane> Shared<'a, L> {
     /// At the start.
     #[inline(always)]
-    pub fn new(table: &'a Table, road: &'a [L], speed: L) -> Self {
+    pub fn new(table: &'a Table, road: &'a [L], speed: L, couplings: Option<&'a Couplings>) -> Self {
         let zero = L::splat(0.0);
         let level = Surface { elevation: zero, slope: zero, curvature: zero };
-        let mut shared = Shared { table, road, speed, step: 0, row: 0, surfaces: vec![level; table.axles()] };
+        let surfaces = vec![level; table.axles()];
+        let mut shared = Shared { table, road, speed, couplings, step: 0, row: 0, surfaces };
         shared.look_down();
         shared
     }
@@ -43,26 +78,33 @@ impl<'a, L: Lane> Shared<'a, L> {
         let axles = self.table.axles();
         let below = &self.table.below[self.row * axles..(self.row + 1) * axles];
         for (surface, below) in self.surfaces.iter_mut().zip(below) {
-            *surface = match below {
-                Below::Given(s) => Surface {
-                    elevation: L::splat(s.elevation),
-                    slope: L::splat(s.slope),
-                    curvature: L::splat(s.curvature),
-                },
+            match below {
+                Below::Given(s) => {
+                    let (elevation, slope) = (L::splat(s.elevation), L::splat(s.slope));
+                    *surface = Surface { elevation, slope, curvature: L::splat(s.curvature) };
+                }
                 Below::Own { given, taps, share } => {
                     let mask = self.road.len() - 1;
-                    let tap = |k: usize| self.road[taps.first.wrapping_add(k) & mask];
-                    let near = [tap(0), tap(1), tap(2), tap(3)];
-                    let elevation = L::splat(given[0]) + weighted(taps.weights[0], near);
+                    let first = taps.first & mask;
+                    // By address, so that they stay vectors.
+                    let near = match self.road.get(first..).unwrap_or_default() {
+                        [a, b, c, d, ..] => [a, b, c, d],
+                        _ => [0, 1, 2, 3].map(|k| &self.road[(first + k) & mask]),
+                    };
+                    let part = |kind: usize| L::splat(given[kind]) + weighted(taps.weights[kind], near.map(|c| *c));
                     // Slope and curvature count only where the step asks for them.
-                    if self.table.kinds == 1 {
-                        share.of([elevation, L::splat(given[1]), L::splat(given[2])])
+                    if self.table.kinds > 1 {
+                        *surface = share.of([part(0), part(1), part(2)]);
                     } else {
-                        let slope = L::splat(given[1]) + weighted(taps.weights[1], near);
-                        share.of([elevation, slope, L::splat(given[2]) + weighted(taps.weights[2], near)])
+                        // Written at once: most of the road counts as it is.
+                        surface.elevation = part(0);
+                        if *share != Share::Whole {
+                            let unasked = L::splat(0.0);
+                            surface.elevation = share.of([surface.elevation, unasked, unasked]).elevation;
+                        }
                     }
                 }
-            };
+            }
         }
     }
 
@@ -116,6 +158,13 @@ impl<L: Lane> Geometry<L> for Shared<'_, L> {
     #[inline(always)]
     fn surface(&self, contact: usize) -> Surface<L> {
         self.surfaces[contact]
+    }
+
+    #[inline(always)]
+    fn coupling(&self) -> Option<&[f64]> {
+        let Couplings { width, numbers } = self.couplings?;
+        let row = self.row.checked_sub(self.table.first)?;
+        numbers.get(row * width..(row + 1) * width)
     }
 }
 
@@ -278,18 +327,16 @@ impl<L: Lane> Traveller<'_, '_, L> {
                 kept[m] = self.group.bridge.as_ref().map_or(c.x, |b| b.coordinates * c.x);
             }
         }
-        for k in 0..axles {
-            if !felt {
-                kept[coordinates + k] = zero;
-            }
-            kept[widths.loads() + k] = self.static_loads[k] + self.state.increments[k];
+        if !felt {
+            kept[coordinates..][..axles].fill(zero);
         }
-        for (b, row) in self.group.bodies.iter().enumerate() {
-            let mut sum = zero;
-            for (factor, q) in row.iter().zip(&self.state.coordinates) {
-                sum = sum + L::splat(*factor) * q.a;
-            }
-            kept[widths.accelerations() + b] = sum;
+        let loads = kept[widths.loads()..][..axles].iter_mut();
+        for ((load, at_rest), increment) in loads.zip(&self.static_loads).zip(&self.state.increments) {
+            *load = *at_rest + *increment;
+        }
+        for (acceleration, row) in kept[widths.accelerations()..].iter_mut().zip(self.group.bodies) {
+            let terms = row.iter().zip(&self.state.coordinates);
+            *acceleration = terms.fold(zero, |sum, (factor, q)| sum + L::splat(*factor) * q.a);
         }
     }
 
@@ -360,14 +407,11 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
         let Stepping { traveller, steppers, way, widths, place, steps, go_on } = self;
         let rates = way.rows.by_rates();
         let from = steps.start;
+        let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps {
             if step > 0 {
                 let (state, geometry) = (&mut traveller.state, &mut traveller.group.geometry);
-                let advanced = match place {
-                    Where::Approach => steppers.approach.advance(state, geometry),
-                    _ => steppers.bridge.advance(state, geometry),
-                };
-                if let Err(e) = advanced {
+                if let Err(e) = stepper.advance(state, geometry) {
                     return Err(Trouble::Failed(step, Some(e)));
                 }
             }

@@ -1,7 +1,11 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
+use std::sync::OnceLock;
+
 use super::alone::{Scaled, passages};
-use super::block::{Bridge, Drawing, Ends, Group, Scratch, Seen, Shared, Steppers, Trouble, Way, march, rest};
+use super::block::{
+    Bridge, Couplings, Drawing, Ends, Group, Scratch, Seen, Shared, Steppers, Trouble, Way, march, rest,
+};
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
 use super::simd::{Isa, dispatch};
@@ -73,6 +77,8 @@ pub struct Task<'a> {
     pub kind: usize,
     /// Its geometry.
     pub table: &'a Table,
+    /// What the samples' steps have in common if the samples are alike, for whichever worker comes first to work out.
+    pub couplings: &'a OnceLock<Couplings>,
     /// The instruction set.
     pub isa: Isa,
 }
@@ -270,7 +276,11 @@ impl Task<'_> {
             Bridge { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
         });
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
-        let geometry = Shared::new(table, roads, speed);
+        let couplings = samples.alike().then(|| {
+            let work = || Couplings::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
+            self.couplings.get_or_init(work)
+        });
+        let geometry = Shared::new(table, roads, speed, couplings);
         let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
         let seen = march(&way, &mut group, steppers, scratch, go_on)?;
         let at_rest = self.layout.own_statics.then(|| {

@@ -1,7 +1,7 @@
 //! The headline case of the ensemble engine, studies with all that it allows, and the few calls by which tests and
 //! benches reach that engine.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use spanwise::analysis::Analysis;
 use spanwise::bridge::Bridge;
@@ -324,7 +324,8 @@ pub fn one<L: Lane>(study: &Study, number: u64) -> (Vec<f64>, Vec<u32>) {
     let (layout, table) = (study.layout(&samples), study.table((0, 0)));
     let (mut numbers, mut instants) = (vec![0.0; layout.width()], vec![0; layout.instants()]);
     let record = Record { numbers: &mut numbers, instants: &mut instants };
-    let task = Task { study, layout, samples: &samples, kind: 0, table: &table, isa: Isa::Scalar };
+    let (samples, table, couplings) = (&samples, &table, &OnceLock::new());
+    let task = Task { study, layout, samples, kind: 0, table, couplings, isa: Isa::Scalar };
     task.run::<L>(&[0], &mut [record], &mut Vec::new(), &|| true).unwrap();
     (numbers, instants)
 }
