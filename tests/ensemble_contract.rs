@@ -95,7 +95,7 @@ fn check_study(name: &str, bridge: &Bridge, vehicle: &Vehicle, recovery: Recover
     let damping = Damping::Ratios(vec![0.015]);
     let modes = bridge.stations().len().min(4);
     let analysis = analysis_of(bridge, modes, &damping, &[], recovery);
-    let approach = if variant % 2 == 0 { 0.0 } else { 11.0 };
+    let approach = if variant.is_multiple_of(2) { 0.0 } else { 11.0 };
     let ramp = if variant % 4 == 3 { 4.0 } else { 0.0 };
     let tail = [0.0, 0.13, 0.4][variant % 3];
     let road = if variant % 5 == 4 { Arc::new(bump(0.3 * bridge.length())) } else { Settings::at_speed(1.0).road };

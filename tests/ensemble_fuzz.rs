@@ -162,7 +162,7 @@ fn waves(length: f64) -> Road {
 }
 
 /// The part of a row that a kind of event fills, and the rest.
-fn split<'a>(values: &'a [f64], width: usize, count: usize) -> impl Iterator<Item = (&'a [f64], &'a [f64])> {
+fn split(values: &[f64], width: usize, count: usize) -> impl Iterator<Item = (&[f64], &[f64])> {
     values.chunks(width.max(1)).map(move |side| side.split_at(count.min(side.len())))
 }
 

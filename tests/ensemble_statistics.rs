@@ -231,7 +231,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
                 Study::new(Arc::clone(&analysis), kinds.clone(), settings, own, advance, &[Quantity::Moment]).unwrap();
             let count = 12;
             // Stiffer and lighter than they are, in all that can be.
-            let factors = Parameter::ALL.into_iter().enumerate().filter_map(|(p, parameter)| {
+            let factors = Parameter::ALL.into_iter().enumerate().map(|(p, parameter)| {
                 let value = |i: usize| match parameter {
                     Parameter::BodyMass | Parameter::PitchInertia => 0.3 + spread(7 * i + p),
                     Parameter::FrictionLimit => 1.0 + 8.0 * spread(7 * i + p),
@@ -240,7 +240,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
                     Parameter::SuspensionStiffness => 1.0,
                     _ => 0.5 + 2.0 * spread(7 * i + p),
                 };
-                Some(Factors { parameter, width: 1, values: (0..count).map(value).collect() })
+                Factors { parameter, width: 1, values: (0..count).map(value).collect() }
             });
             let samples = Samples {
                 kinds: (0..count).map(|i| (i % 2) as u32).collect(),

@@ -371,6 +371,8 @@ impl<L: Lane> Traveller<'_, '_, L> {
         for p in &self.state.increments {
             sum = sum + *p;
         }
+        // Nought, unless something is infinite or not a number.
+        #[allow(clippy::eq_op)]
         let nought = sum - sum;
         let ended = self.group.ends.last.less(L::splat(step as f64));
         L::all(!(nought.less(zero) | !nought.less(L::splat(1.0))) | ended)

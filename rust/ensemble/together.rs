@@ -315,7 +315,7 @@ impl Task<'_> {
         record: &mut Record<'_>,
     ) {
         let (layout, look) = (&self.layout, &self.study.look);
-        let (responses, axles) = (layout.responses, static_loads.len());
+        let responses = layout.responses;
         record.forget();
         let h = self.step(sample);
         let start = layout.range(Column::Responses).start;
@@ -335,7 +335,7 @@ impl Task<'_> {
         let ride = &seen.ride;
         let count = (self.table.path.steps + 1 - self.table.first) as f64;
         let column = |column: Column| layout.range(column).start;
-        for k in 0..axles {
+        for (k, static_load) in static_loads.iter().enumerate() {
             let watched = &ride.loads[k];
             for (side, (value, at)) in
                 [(watched.max, watched.max_at), (watched.min, watched.min_at)].into_iter().enumerate()
@@ -345,7 +345,7 @@ impl Task<'_> {
             }
             let [sum, squares] = ride.sums[k].map(|s| s.get(lane) / count);
             let deviation = (squares - sum * sum).max(0.0).sqrt();
-            record.numbers[column(Column::LoadCoefficients) + k] = deviation / static_loads[k];
+            record.numbers[column(Column::LoadCoefficients) + k] = deviation / static_load;
             record.numbers[column(Column::Aloft) + k] = ride.aloft[k].get(lane) * h;
             record.instants[2 * (responses + layout.axles) + k] = ride.lift_offs[k].get(lane) as u32;
         }
