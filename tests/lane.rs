@@ -153,8 +153,7 @@ impl<L: Lane> Work for Seen<'_, L> {
         let mut all = Vec::new();
         for rows in self.0.chunks(L::SAMPLES) {
             let mut watched = Watched::<L>::nothing();
-            let steps = rows[0].len();
-            for step in 0..steps {
+            for (step, _) in rows[0].iter().enumerate() {
                 let value = L::from_fn(|lane| rows[lane.min(rows.len() - 1)][step]);
                 watched.take(value, L::splat(step as f64));
             }
