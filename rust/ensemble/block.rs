@@ -162,7 +162,7 @@ impl<L: Lane> Geometry<L> for Shared<'_, L> {
 
     #[inline(always)]
     fn coupling(&self) -> Option<&[f64]> {
-        let Couplings { width, numbers } = self.couplings?;
+        let Couplings { width, numbers } = self.couplings.filter(|couplings| couplings.width > 0)?;
         let row = self.row.checked_sub(self.table.first)?;
         numbers.get(row * width..(row + 1) * width)
     }
