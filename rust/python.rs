@@ -92,7 +92,10 @@ fn attended<T: Send>(
             let mut last = Instant::now();
             while end.recv_timeout(SIGNAL_INTERVAL / 2) == Err(RecvTimeoutError::Timeout) {
                 if raised.is_none() && last.elapsed() >= SIGNAL_INTERVAL {
-                    raised = Python::attach(|py| py.check_signals().and_then(|()| tell(py))).err();
+                    // That all is done is told once, at the end.
+                    let going = progress.done.load(Ordering::Relaxed) < total;
+                    let look = |py: Python<'_>| py.check_signals().and_then(|()| if going { tell(py) } else { Ok(()) });
+                    raised = Python::attach(look).err();
                     last = Instant::now();
                 }
                 if raised.is_some() {
