@@ -197,17 +197,6 @@ impl Study {
         self.own.is_none() && self.settings.road.is_smooth()
     }
 
-    /// Whether any vehicle stands on more axles and springs than hold it, so that their stiffnesses share out its weight.
-    fn shares_by_stiffness(&self) -> bool {
-        self.kinds.iter().flat_map(|kind| &kind.passages).any(|passage| {
-            let (bodies, axles) = (passage.vehicle.bodies(), passage.vehicle.axles().len());
-            let couplings = || bodies.iter().flat_map(|body| &body.couplings);
-            let hinges = couplings().filter(|coupling| coupling.is_hinge()).count();
-            let springs = couplings().count() - hinges;
-            axles + springs + hinges > 2 * bodies.len()
-        })
-    }
-
     /// The vehicles of every kind.
     fn vehicles(&self) -> Vec<Vec<&Vehicle>> {
         self.kinds.iter().map(|kind| kind.passages.iter().map(|p| &p.vehicle).collect()).collect()
@@ -219,15 +208,11 @@ impl Study {
             let of = self.kinds.iter().map(|k| k.passages.iter().map(|p| count(&p.vehicle)).sum());
             of.max().unwrap_or(0)
         };
-        let springs = [Parameter::TyreStiffness, Parameter::SuspensionStiffness];
         Layout {
             responses: self.look.chosen.len(),
             axles: most(&|v| v.assembly().contacts.len()),
             bodies: most(&|v| v.bodies().len()),
-            own_statics: !self.shares
-                || samples.varies(Parameter::BodyMass)
-                || samples.varies(Parameter::BridgeStiffness)
-                || self.shares_by_stiffness() && springs.into_iter().any(|springs| samples.varies(springs)),
+            own_statics: !self.shares || samples.varies_loads() || samples.varies(Parameter::BridgeStiffness),
             own_times: !self.shares,
         }
     }

@@ -237,11 +237,7 @@ impl<L: Lane> Seen<L> {
     /// Nothing yet; but for a bridge that was at rest.
     pub fn nothing(rows: usize, axles: usize, bodies: usize, table: &Table) -> Self {
         let before = if table.first > 0 { Watched::rest() } else { Watched::nothing() };
-        Seen {
-            steps: vec![before; rows],
-            stops: vec![Watched::nothing(); rows],
-            ride: Ride::nothing(axles, bodies),
-        }
+        Seen { steps: vec![before; rows], stops: vec![Watched::nothing(); rows], ride: Ride::nothing(axles, bodies) }
     }
 }
 
