@@ -9,8 +9,8 @@ use std::process::Command;
 use problems::ensemble::{headline, run, samples};
 use spanwise::ensemble::simd::Isa;
 
-/// Products of whole vectors in the march at least, of the step and of the recovery; it has some fifteen hundred.
-const PRODUCTS: usize = 500;
+/// Products of whole vectors in the steps and in the recovery, at least; with AVX2 each has some eight hundred.
+const PRODUCTS: usize = 300;
 
 /// What is counted in a function.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,28 +54,35 @@ fn compiled() -> BTreeMap<String, Counts> {
     functions
 }
 
-/// The march for an instruction set: of the functions that the dispatch compiled for it, that with the most products.
-fn march(of: &str, width: usize) -> (String, Counts) {
+/// All that the dispatch compiled for an instruction set: steps, recovery and roads. Fused products are counted in the two
+/// largest of these functions, steps and recovery, for libraries may fuse where they dispatch by the same means.
+fn march(of: &str, width: usize) -> Counts {
     // So that the march is linked into this program.
     assert!(run(&headline(), &samples(1), Isa::Scalar, 1).results.failures.is_empty());
-    let mut all: Vec<(String, Counts)> = compiled().into_iter().filter(|(name, _)| name.contains(of)).collect();
-    all.sort_by_key(|(_, counts)| counts.products[width]);
-    let march = all.pop().unwrap_or_else(|| panic!("no function is compiled for {of}"));
-    println!("{}: {:?}", march.0, march.1);
-    assert!(march.1.products[width] >= PRODUCTS, "{}: {:?} is not the march", march.0, march.1);
-    march
+    let mut all: Vec<Counts> =
+        compiled().into_iter().filter(|(name, _)| name.contains(of)).map(|(_, counts)| counts).collect();
+    all.sort_by_key(|counts| std::cmp::Reverse(counts.products[width]));
+    let [steps, recovery] = [all[0], all[1]];
+    println!("{of}: {steps:?}, {recovery:?} and {} more", all.len() - 2);
+    assert!(steps.products[width].min(recovery.products[width]) >= PRODUCTS, "{of}: these are not the march");
+    Counts {
+        products: steps.products,
+        gathers: all.iter().map(|counts| counts.gathers).sum(),
+        scatters: all.iter().map(|counts| counts.scatters).sum(),
+        fused: steps.fused + recovery.fused,
+    }
 }
 
 #[test]
 fn avx2_works_on_whole_vectors() {
-    let (name, counts) = march("V3", 0);
-    assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{name}: {counts:?}");
+    let counts = march("V3", 0);
+    assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{counts:?}");
 }
 
 /// Ignored as long as the compiler makes vectors across coordinates and modes there, for which it gathers.
 #[test]
 #[ignore = "gathers and scatters, see above"]
 fn avx512_works_on_whole_vectors() {
-    let (name, counts) = march("V4", 1);
-    assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{name}: {counts:?}");
+    let counts = march("V4", 1);
+    assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{counts:?}");
 }
