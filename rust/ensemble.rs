@@ -52,8 +52,6 @@ pub struct Kind {
     pub passages: Vec<Passage>,
     /// Vertical displacement of every body of the first vehicle, as rows over its coordinates.
     bodies: Vec<Vec<f64>>,
-    /// Static extremes, largest of all responses looked at, then smallest, where all samples have them alike.
-    pub at_rest: Vec<f64>,
 }
 
 /// Everything that the samples of a study share.
@@ -147,16 +145,12 @@ impl Study {
         for passages in kinds {
             let bodies = passages[0].vehicle.assembly().bodies.iter();
             let bodies = bodies.map(|[heave, _]| heave.iter().copied().collect()).collect();
-            study.kinds.push(Kind { passages, bodies, at_rest: Vec::new() });
+            study.kinds.push(Kind { passages, bodies });
         }
         for kind in 0..study.kinds.len() {
             study.check_road(kind)?;
         }
-        if shares {
-            for kind in 0..study.kinds.len() {
-                study.kinds[kind].at_rest = together::at_rest(&study, kind, &study.table((kind, 0)));
-            }
-        } else if advance.is_some() {
+        if !shares && advance.is_some() {
             let allowed = "only for vehicles that cross alone from the left at constant speed: use step";
             return Err(Error::input("advance", format!("{} m", advance.unwrap_or_default()), allowed));
         }
@@ -474,7 +468,8 @@ pub struct Run {
     pub tables: Vec<Arc<Table>>,
     /// How often the step was halved, by march.
     pub refinements: Vec<u32>,
-    /// Static extremes in these steps, as [`Kind::at_rest`] holds them, by march; none if samples have their own.
+    /// Static extremes in these steps, largest of all responses looked at, then smallest, by march; none if samples have
+    /// their own.
     pub at_rest: Vec<Vec<f64>>,
 }
 

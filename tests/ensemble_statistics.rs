@@ -11,6 +11,7 @@ use spanwise::assembly::Friction;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::Passage;
 use spanwise::damping::Damping;
+use spanwise::ensemble::Run;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
@@ -158,7 +159,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
         for parameter in [Parameter::BodyMass, Parameter::BridgeStiffness, Parameter::BridgeDamping] {
             let factors = vec![Factors { parameter, width: 1, values: values.to_vec() }];
             let samples = Samples { factors, ..Samples::at_speed(3, values.len(), 20.0) };
-            let found = run(&study, &samples, Isa::chosen().unwrap(), 1).results;
+            let Run { results: found, at_rest: alike, .. } = run(&study, &samples, Isa::chosen().unwrap(), 1);
             assert_eq!(found.layout.own_statics, parameter != Parameter::BridgeDamping);
             for (sample, &value) in values.iter().enumerate() {
                 let built = match parameter {
@@ -166,14 +167,15 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                     Parameter::BridgeStiffness => made(stiffer(value, 0.02, recovery), heavier(1.0)),
                     _ => made(stiffer(1.0, 0.02 * value, recovery), heavier(1.0)),
                 };
-                let own = run(&built, &Samples::at_speed(3 + sample as u64, 1, 20.0), Isa::Scalar, 1).results;
+                let one = Samples::at_speed(3 + sample as u64, 1, 20.0);
+                let Run { results: own, at_rest: own_at_rest, .. } = run(&built, &one, Isa::Scalar, 1);
                 let near = |what: &str, found: &[f64], expected: &[f64]| {
                     let off = problems::largest_difference(found, expected) / largest_magnitude(expected);
                     assert!(off <= TWICE, "{recovery:?}, {parameter:?} {value}, {what}: {off:e}");
                 };
                 let at_rest = match found.layout.own_statics {
                     true => column(&found, sample, Column::Statics),
-                    false => &study.kinds[0].at_rest,
+                    false => &alike[0],
                 };
                 let responses = found.layout.responses;
                 for side in 0..2 {
@@ -188,7 +190,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                         let [dynamic, expected] =
                             [column(&found, sample, Column::Responses), column(&own, 0, Column::Responses)];
                         near(&name, &dynamic[range.clone()], &expected[range.clone()]);
-                        near(&name, &at_rest[range.clone()], &built.kinds[0].at_rest[range]);
+                        near(&name, &at_rest[range.clone()], &own_at_rest[0][range]);
                     }
                 }
                 near("loads", column(&found, sample, Column::Loads), column(&own, 0, Column::Loads));

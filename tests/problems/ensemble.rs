@@ -270,10 +270,9 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         };
         let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
         let values = column(results, sample, Column::Responses);
-        // Where the step of a kind as it is is halved for nobody, what all samples have alike is that of each.
         let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
         let statics = match shared {
-            None if run.refinements[march] == 0 => Some(&study.kinds[samples.kind(sample)].at_rest[..]),
+            None => Some(&run.at_rest[march][..]),
             own => own,
         };
         let largest = largest_magnitude(statics.unwrap_or_default());
