@@ -10,24 +10,14 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group};
 use problems::ensemble::{SEED, headline, isas, one, run, samples, synthesis};
-use pulp::{NullaryFnOnce, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
+use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::simd::{InLanes, Lanes, SAMPLES, Work, with};
 use spanwise::lane::Lane;
-use spanwise::lane::wide::Wide;
 use spanwise::road::random::Synthesis;
 
 /// Crossings per measurement.
 const CROSSINGS: usize = 256;
-
-/// Runs `op` compiled for an instruction set, by the dispatch that the engine uses.
-fn on<F: NullaryFnOnce>(isa: &str, op: F) -> F::Output {
-    match isa {
-        #[cfg(target_arch = "x86_64")]
-        "avx2" => pulp::x86::V3::try_new().unwrap().vectorize(op),
-        #[cfg(target_arch = "x86_64")]
-        "avx512" => pulp::x86::V4::try_new().unwrap().vectorize(op),
-        _ => op.call(),
-    }
-}
 
 fn crossings(c: &mut Criterion) {
     let (study, synthesis) = (headline(), synthesis());
@@ -42,10 +32,10 @@ fn crossings(c: &mut Criterion) {
             b.iter(|| run(&study, &samples, isa, threads));
         });
     }
-    group.throughput(Throughput::Elements(Wide::<8>::SAMPLES as u64));
-    for (name, _) in isas() {
+    group.throughput(Throughput::Elements(SAMPLES as u64));
+    for (name, isa) in isas() {
         let roads = Synthesised { synthesis: &synthesis };
-        group.bench_function(BenchmarkId::new("roads", name), |b| b.iter(|| on(name, roads)));
+        group.bench_function(BenchmarkId::new("roads", name), |b| b.iter(|| with(isa, roads)));
     }
     group.finish();
 }
@@ -56,12 +46,14 @@ struct Synthesised<'a> {
     synthesis: &'a Synthesis,
 }
 
-impl NullaryFnOnce for Synthesised<'_> {
-    type Output = Vec<Wide<8>>;
+impl InLanes for Synthesised<'_> {
+    type Output = usize;
 
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        self.synthesis.coefficients(black_box(SEED), |lane| lane as u64)
+    fn run<L: Lanes>(self) -> usize {
+        let mut road: Vec<L> = Vec::new();
+        let (synthesis, seed) = (self.synthesis, black_box(SEED));
+        L::dispatch(Drawing { synthesis, seed, sample: |lane| lane as u64, road: &mut road });
+        black_box(road).len()
     }
 }
 
@@ -244,6 +236,12 @@ impl Lane for Counted {
 
     fn from_bits(bits: u64) -> Self {
         Counted(f64::from_bits(bits))
+    }
+}
+
+impl Lanes for Counted {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        work.run()
     }
 }
 

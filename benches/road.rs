@@ -1,40 +1,35 @@
 //! Random roads of eight samples side by side, by instruction set; times are per sample.
 
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use spanwise::lane::wide::Wide;
+use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::simd::{InLanes, Isa, Lanes, SAMPLES, with};
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
 
-const SAMPLES: usize = 8;
-
-/// Draws the roads of one block.
+/// Draws the roads of so many blocks, one after the other.
 struct Draw<'a> {
     synthesis: &'a Synthesis,
-    block: u64,
-    coefficients: &'a mut Vec<Wide<SAMPLES>>,
+    blocks: u64,
 }
 
-impl pulp::NullaryFnOnce for Draw<'_> {
-    type Output = ();
+impl InLanes for Draw<'_> {
+    type Output = Duration;
 
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        let first = SAMPLES as u64 * self.block;
-        self.synthesis.coefficients_into(7, |lane| first + lane as u64, self.coefficients);
+    fn run<L: Lanes>(self) -> Duration {
+        let Draw { synthesis, blocks } = self;
+        let mut road: Vec<L> = Vec::new();
+        let start = Instant::now();
+        for block in 0..blocks {
+            let sample = |lane: usize| SAMPLES as u64 * block + lane as u64;
+            L::dispatch(Drawing { synthesis, seed: 7, sample, road: &mut road });
+            black_box(&mut road);
+        }
+        start.elapsed()
     }
-}
-
-fn scalar(draw: Draw) {
-    pulp::NullaryFnOnce::call(draw);
-}
-
-#[cfg(target_arch = "x86_64")]
-fn avx2(draw: Draw) {
-    pulp::x86::V3::try_new().unwrap().vectorize(draw);
 }
 
 fn roads(c: &mut Criterion) {
@@ -42,25 +37,15 @@ fn roads(c: &mut Criterion) {
     for period in [128.0, 1024.0] {
         let spectrum = Spectrum::new(64e-6, 2.0, [0.01, 4.0]).unwrap();
         let synthesis = Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(period)).unwrap();
-        let mut coefficients = Vec::new();
-        let mut bench = |isa: &str, draw: fn(Draw)| {
-            let id = BenchmarkId::new(format!("points={}", synthesis.points()), isa);
+        for isa in Isa::present() {
+            let id = BenchmarkId::new(format!("points={}", synthesis.points()), isa.name());
             group.bench_function(id, |b| {
                 b.iter_custom(|samples| {
                     let blocks = samples.div_ceil(SAMPLES as u64);
-                    let start = Instant::now();
-                    for block in 0..blocks {
-                        draw(Draw { synthesis: &synthesis, block, coefficients: &mut coefficients });
-                        black_box(&mut coefficients);
-                    }
-                    start.elapsed().mul_f64(samples as f64 / (blocks * SAMPLES as u64) as f64)
+                    let taken = with(isa, Draw { synthesis: &synthesis, blocks });
+                    taken.mul_f64(samples as f64 / (blocks * SAMPLES as u64) as f64)
                 });
             });
-        };
-        bench("scalar", scalar);
-        #[cfg(target_arch = "x86_64")]
-        if pulp::x86::V3::try_new().is_some() {
-            bench("avx2", avx2);
         }
     }
     group.finish();

@@ -513,7 +513,8 @@ impl<L: Lane> Elements<L> {
     }
 
     /// Solves p_k = law_k(u_k − Σ S_kj p_j) for all elements, starting from the p given; `compliance` is S by rows, and
-    /// lanes that are `frozen` keep their p. What is `known` is as in [`Elements::hold`].
+    /// lanes that are `frozen` keep their p. What is `known` is as in [`Elements::hold`]; what comes second after the p is
+    /// room for as many.
     ///
     /// One element after the other with its own equation solved exactly (nonlinear Gauss–Seidel): the laws rise and S
     /// is positive definite, so this is descent on a strictly convex energy and converges from anywhere, through slip
@@ -530,25 +531,26 @@ impl<L: Lane> Elements<L> {
         compliance: &[L],
         before: &[Stroke<L>],
         prepared: &[Prepared<L>],
-        p: &mut [L],
+        [p, fresh]: [&mut [L]; 2],
         frozen: L::Mask,
     ) -> bool {
         let (contacts, n) = (known.contacts, known.all());
         let (u, compliance, before) = (&u[..n], &compliance[..n * n], &before[..n]);
-        let (prepared, p) = (&prepared[..n], &mut p[..n]);
+        let (prepared, p, fresh) = (&prepared[..n], &mut p[..n], &mut fresh[..n]);
         let (wheels, rubbing) = (&self.contacts[..contacts], &self.rubbing[..known.rubbing]);
         let mut done = frozen;
         for _ in 0..SWEEPS {
             let mut left = L::splat(0.0);
             for k in 0..n {
                 if k < contacts && !known.coulomb && wheels[k].constant {
+                    fresh[k] = p[k];
                     continue;
                 }
                 let row = &compliance[k * n..][..n];
                 let mut others = u[k];
                 for j in 0..n {
                     if j != k {
-                        others = others - row[j] * p[j];
+                        others = others - row[j] * if j < k { fresh[j] } else { p[j] };
                     }
                 }
                 let found = if k < contacts {
@@ -556,10 +558,14 @@ impl<L: Lane> Elements<L> {
                 } else {
                     rubbing[k - contacts].solve(others, &prepared[k], &before[k])
                 };
-                let next = L::select(done, p[k], found);
-                left = left + prepared[k].held.reach * (next - p[k]).magnitude();
-                p[k] = next;
+                // Not where it came from: the compiler would store it lane by lane, which is slow.
+                fresh[k] = L::select(done, p[k], found);
+                // The first one has none before it.
+                if k > 0 {
+                    left = left + prepared[k].held.reach * (fresh[k] - p[k]).magnitude();
+                }
             }
+            p.copy_from_slice(fresh);
             // A single axle is exact at once; a NaN never counts as settled.
             done = done | left.less(self.tolerance);
             if n <= 1 || L::all(done) {

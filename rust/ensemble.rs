@@ -27,7 +27,6 @@ use crate::course::{Course, Drive, Passage};
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
 use crate::influence::Quantity;
-use crate::lane::wide::Wide;
 use crate::path::Pavement;
 use crate::road::random::Synthesis;
 use crate::settings::Settings;
@@ -38,6 +37,7 @@ use record::{Failure, Layout, Record, Results};
 use sample::{Parameter, Samples};
 use simd::{Isa, SAMPLES};
 use table::{Advance, Ground, Table};
+use together::{Part, Task};
 
 /// Most samples that a worker takes at a time unless told otherwise.
 pub const BLOCK: usize = 256;
@@ -366,9 +366,9 @@ impl Study {
                 let (kind, _) = marches[march];
                 if self.shares {
                     let (table, couplings) = (&tables[march], &couplings[march]);
-                    let task =
-                        together::Task { study: self, layout, samples, kind, table, couplings, isa: workers.isa };
-                    task.run::<Wide<SAMPLES>>(members, &mut records, &mut failed, &go_on)?;
+                    let task = Task { study: self, layout, samples, kind, table, couplings };
+                    let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
+                    simd::with(workers.isa, Part { task, members, records, failed, go_on })?;
                 } else {
                     for (&member, record) in members.iter().zip(&mut records) {
                         let sample = member as usize;

@@ -2,6 +2,8 @@
 
 pub mod bits;
 pub mod wide;
+#[cfg(target_arch = "x86_64")]
+pub mod x86;
 
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 

@@ -310,6 +310,9 @@ struct Room<C, N, P> {
     coupling: N,
     /// What the elements follow, but for the increments of the forces.
     offset: N,
+    /// The increments, and those of the next sweep.
+    increments: N,
+    fresh: N,
     prepared: P,
 }
 
@@ -334,6 +337,8 @@ impl<C, N, P> Room<C, N, P> {
             senses: self.senses.as_mut(),
             coupling: self.coupling.as_mut(),
             offset: self.offset.as_mut(),
+            increments: self.increments.as_mut(),
+            fresh: self.fresh.as_mut(),
             prepared: self.prepared.as_mut(),
         }
     }
@@ -356,6 +361,8 @@ impl<L: Lane> UsualRoom<L> {
             senses: zeros,
             coupling: zeros,
             offset: zeros,
+            increments: zeros,
+            fresh: zeros,
             prepared: [Prepared::nothing(); USUAL.all()],
         }
     }
@@ -473,6 +480,8 @@ impl<L: Lane> Stepper<L> {
                 senses: zeros(modes),
                 coupling: zeros(form.width()),
                 offset: zeros(n),
+                increments: zeros(n),
+                fresh: zeros(n),
                 prepared: vec![Prepared::nothing(); n],
             },
             form,
@@ -783,11 +792,15 @@ impl<L: Lane> Stepper<L> {
         self.sense(form, geometry, desk);
         self.sit(form, desk);
         let Coupling { compliance, held, receptance, .. } = Coupling::of(form, desk.coupling);
-        let (prepared, increments, strokes) = (&mut *desk.prepared, &mut state.increments, &state.strokes);
+        let (prepared, strokes) = (&mut *desk.prepared, &state.strokes);
         self.elements.prepare(form.elements, held, strokes, prepared);
-        if !self.elements.solve(form.elements, desk.offset, compliance, strokes, prepared, increments, frozen) {
+        let increments = &mut desk.increments[..form.all()];
+        increments.copy_from_slice(&state.increments[..form.all()]);
+        let room = [&mut *increments, &mut *desk.fresh];
+        if !self.elements.solve(form.elements, desk.offset, compliance, strokes, prepared, room, frozen) {
             return Err(Unsettled::ContactForces);
         }
+        state.increments[..form.all()].copy_from_slice(increments);
         for (m, mode) in state.modes[..form.modes].iter_mut().enumerate() {
             let mut a = desk.loaded[..form.modes][m].a;
             for (k, increment) in increments[..form.contacts()].iter().enumerate() {
@@ -797,7 +810,7 @@ impl<L: Lane> Stepper<L> {
         }
         for unit in &self.units[..form.vehicles] {
             let [contacts, rubbing, coordinates] = form.part(unit);
-            let forces = [&state.increments[contacts], &state.increments[rubbing]];
+            let forces = [&increments[contacts], &increments[rubbing]];
             let (bodies, state) = (&desk.bodies[coordinates.clone()], &mut state.coordinates[coordinates]);
             unit.rig.correct(&self.newmark, bodies, forces, state, form.passive);
         }

@@ -91,7 +91,7 @@ fn solve(wheels: &[Wheel], u: &[f64], s: &[f64], p: &mut [f64], frozen: bool) ->
     elements.hold(known, s, &mut held);
     let mut prepared = vec![Prepared::nothing(); wheels.len()];
     elements.prepare(known, &held, &strokes, &mut prepared);
-    elements.solve(known, u, s, &strokes, &prepared, p, frozen)
+    elements.solve(known, u, s, &strokes, &prepared, [p, &mut vec![0.0; known.all()]], frozen)
 }
 
 /// Root of a rising function.

@@ -79,9 +79,7 @@ fn avx2_works_on_whole_vectors() {
     assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{counts:?}");
 }
 
-/// Ignored as long as the compiler makes vectors across coordinates and modes there, for which it gathers.
 #[test]
-#[ignore = "gathers and scatters, see above"]
 fn avx512_works_on_whole_vectors() {
     let counts = march("V4", 1);
     assert_eq!((counts.gathers, counts.scatters, counts.fused), (0, 0, 0), "{counts:?}");

@@ -4,9 +4,10 @@ mod problems;
 
 use std::marker::PhantomData;
 
-use spanwise::ensemble::simd::{Isa, SAMPLES, Work, dispatch};
+use spanwise::ensemble::simd::{InLanes, Isa, Lanes, SAMPLES, Work, with};
 use spanwise::ensemble::watch::Watched;
 use spanwise::lane::Lane;
+use spanwise::lane::bits::Bits;
 use spanwise::lane::wide::Wide;
 
 /// All that can go wrong, and something that does not.
@@ -26,6 +27,31 @@ const NUMBERS: [f64; 14] = [
     f64::MAX,
     f64::INFINITY,
 ];
+
+/// Does a work, given what it works on, in lanes of every kind, and checks each outcome. Instruction sets that the
+/// processor does not have come to the same without them.
+macro_rules! in_all_lanes {
+    ($work:ident of $given:ty, $what:expr, $check:expr) => {{
+        struct Any<'a>(&'a $given);
+
+        impl InLanes for Any<'_> {
+            type Output = <$work<'static, f64> as Work>::Output;
+
+            fn run<L: Lanes>(self) -> Self::Output {
+                assert_eq!(L::SAMPLES, SAMPLES);
+                L::dispatch($work::<L>(self.0, PhantomData))
+            }
+        }
+
+        let (what, check) = ($what, $check);
+        check("single", f64::dispatch($work::<f64>(what, PhantomData)));
+        check("one wide", Wide::<1>::dispatch($work::<Wide<1>>(what, PhantomData)));
+        check("four wide", Wide::<4>::dispatch($work::<Wide<4>>(what, PhantomData)));
+        for isa in Isa::ALL {
+            check(isa.name(), with(isa, Any(what)));
+        }
+    }};
+}
 
 /// NaN with a sign and a payload, by its bits.
 fn other_nan() -> f64 {
@@ -92,13 +118,9 @@ fn bits(all: &[Vec<f64>]) -> Vec<Vec<u64>> {
 fn choices_keep_every_bit() {
     let pairs = pairs();
     let expected: Vec<Vec<f64>> = pairs.iter().map(|&pair| expected(pair)).collect();
-    assert_eq!(bits(&Choices::<f64>(&pairs, PhantomData).run()), bits(&expected));
-    assert_eq!(bits(&Choices::<Wide<1>>(&pairs, PhantomData).run()), bits(&expected));
-    assert_eq!(bits(&Choices::<Wide<4>>(&pairs, PhantomData).run()), bits(&expected));
-    // Those that the processor does not have come to the same without them.
-    for isa in Isa::ALL {
-        assert_eq!(bits(&dispatch(isa, Choices::<Wide<SAMPLES>>(&pairs, PhantomData))), bits(&expected), "{isa:?}");
-    }
+    in_all_lanes!(Choices of [[f64; 2]], &pairs, |lanes, found: Vec<Vec<f64>>| {
+        assert_eq!(bits(&found), bits(&expected), "{lanes}");
+    });
 }
 
 /// Sums, products and quotients in lanes are those of single numbers.
@@ -137,9 +159,9 @@ fn arithmetic_is_exact_in_every_lane() {
         let bits = |v: &f64| if v.is_nan() { f64::NAN.to_bits() } else { v.to_bits() };
         all.iter().map(|values| values.iter().map(bits).collect()).collect()
     };
-    for isa in Isa::ALL {
-        assert_eq!(plain(&dispatch(isa, Sums::<Wide<SAMPLES>>(&pairs, PhantomData))), plain(&expected), "{isa:?}");
-    }
+    in_all_lanes!(Sums of [[f64; 2]], &pairs, |lanes, found: Vec<Vec<f64>>| {
+        assert_eq!(plain(&found), plain(&expected), "{lanes}");
+    });
 }
 
 /// What a row of values leaves: largest, when, smallest, when.
@@ -189,42 +211,72 @@ fn the_first_of_equal_extremes_counts() {
         }
     }
     let expected: Vec<[f64; 4]> = rows.iter().map(|row| seen(row)).collect();
-    let same = |found: &[[f64; 4]]| {
+    in_all_lanes!(Seen of [Vec<f64>], &rows, |lanes, found: Vec<[f64; 4]>| {
         for ((found, expected), row) in found.iter().zip(&expected).zip(&rows) {
-            assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits), "{row:?}: {found:?}, {expected:?}");
+            let same = found.map(f64::to_bits) == expected.map(f64::to_bits);
+            assert!(same, "{lanes}, {row:?}: {found:?}, {expected:?}");
         }
-    };
-    same(&Seen::<f64>(&rows, PhantomData).run());
-    for isa in Isa::ALL {
-        same(&dispatch(isa, Seen::<Wide<SAMPLES>>(&rows, PhantomData)));
-    }
+    });
 }
 
 /// Each lane sees its own numbers only.
 #[test]
 fn lanes_do_not_mix() {
-    struct Each<L>(PhantomData<L>);
+    struct Each<'a, L>(&'a [f64], PhantomData<L>);
 
-    impl<L: Lane> Work for Each<L> {
+    impl<L: Lane> Work for Each<'_, L> {
         type Output = Vec<Vec<f64>>;
 
         #[inline(always)]
         fn run(self) -> Self::Output {
-            let own = L::from_fn(|lane| lane as f64);
+            let own = L::from_fn(|lane| self.0[lane]);
             let found = [own + own, own * own, own.larger(L::splat(2.5)), own.smaller(L::splat(2.5)), own.exp()];
             (0..L::SAMPLES).map(|lane| found.iter().map(|value| value.get(lane)).collect()).collect()
         }
     }
 
-    for isa in Isa::ALL {
-        let found = dispatch(isa, Each::<Wide<SAMPLES>>(PhantomData));
-        assert_eq!(found.len(), SAMPLES);
-        for (lane, found) in found.into_iter().enumerate() {
-            let x = lane as f64;
-            let expected = vec![x + x, x * x, x.max(2.5), x.min(2.5), libm_exp(x)];
-            assert_eq!(found, expected, "{isa:?}");
+    let own: [f64; SAMPLES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+    in_all_lanes!(Each of [f64], &own, |lanes, found: Vec<Vec<f64>>| {
+        for (found, x) in found.into_iter().zip(own) {
+            assert_eq!(found, [x + x, x * x, x.max(2.5), x.min(2.5), libm_exp(x)], "{lanes}");
+        }
+    });
+}
+
+/// Whole numbers in lanes are those of single ones.
+#[test]
+fn bits_are_exact_in_every_lane() {
+    struct Whole<'a, L>(&'a [u64], PhantomData<L>);
+
+    impl<L: Lane> Work for Whole<'_, L> {
+        type Output = Vec<Vec<u64>>;
+
+        #[inline(always)]
+        fn run(self) -> Self::Output {
+            let mut all = Vec::new();
+            for pairs in self.0.windows(2).collect::<Vec<_>>().chunks(L::SAMPLES) {
+                let [a, b] = [0, 1].map(|k| L::Bits::from_fn(|lane| pairs[lane.min(pairs.len() - 1)][k]));
+                let moved = [a.up(0), a.up(33), a.down(0), a.down(32), a.spread(), L::Bits::splat(self.0[1])];
+                let joint = [a.plus(b), a.and(b), a.or(b), a.xor(b), a.times(b), L::from_bits(a).to_bits()];
+                let found = [moved, joint].concat();
+                all.extend((0..pairs.len()).map(|lane| found.iter().map(|bits| bits.get(lane)).collect::<Vec<u64>>()));
+            }
+            all
         }
     }
+
+    let mut all = vec![0, 1, u64::MAX, 1 << 63, (1 << 63) - 1, 0x0123_4567_89ab_cdef, 0xffff_ffff, 1 << 32];
+    all.extend(numbers().into_iter().filter(|x| !x.is_nan()).map(f64::to_bits));
+    let expected: Vec<Vec<u64>> = all
+        .windows(2)
+        .map(|pair| {
+            let (a, b) = (pair[0], pair[1]);
+            let spread = if a >> 63 == 1 { u64::MAX } else { 0 };
+            let product = (a & 0xffff_ffff) * (b & 0xffff_ffff);
+            vec![a, a << 33, a, a >> 32, spread, all[1], a.wrapping_add(b), a & b, a | b, a ^ b, product, a]
+        })
+        .collect();
+    in_all_lanes!(Whole of [u64], &all, |lanes, found: Vec<Vec<u64>>| assert_eq!(found, expected, "{lanes}"));
 }
 
 /// That of a single number, which tests/road.rs and tests/friction.rs hold to what is known.

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 use spanwise::error::Error;
 use spanwise::lane::Lane;
+use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::simd::{InLanes, Isa, Lanes, with};
 use spanwise::lane::bits::{Bits, WideBits};
 use spanwise::lane::wide::Wide;
 use spanwise::road::feature::Feature;
@@ -167,15 +169,15 @@ struct Draw<'a> {
     first: u64,
 }
 
-impl pulp::NullaryFnOnce for Draw<'_> {
-    type Output = Vec<Wide<8>>;
+impl InLanes for Draw<'_> {
+    type Output = Vec<Vec<u64>>;
 
-    #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn run<L: Lanes>(self) -> Self::Output {
+        let Draw { synthesis, first } = self;
         // Not only zeros before.
-        let mut coefficients = vec![Wide::splat(f64::NAN); 5 + self.first as usize % 2 * 100_000];
-        self.synthesis.coefficients_into(7, |lane| self.first + lane as u64, &mut coefficients);
-        coefficients
+        let mut road = vec![L::splat(f64::NAN); 5 + first as usize % 2 * 100_000];
+        L::dispatch(Drawing { synthesis, seed: 7, sample: |lane| first + lane as u64, road: &mut road });
+        (0..L::SAMPLES).map(|lane| road.iter().map(|c| c.get(lane).to_bits()).collect()).collect()
     }
 }
 
@@ -190,19 +192,13 @@ fn lanes_and_instruction_sets_do_not_matter() {
         let synthesis = Synthesis::new(spectrum, patch(PATCH), Some(period)).unwrap();
         for first in [0, u64::from(u32::MAX) - 3] {
             let draw = || Draw { synthesis: &synthesis, first };
-            let wide = pulp::NullaryFnOnce::call(draw());
-            for lane in 0..8 {
+            let plain = draw().run::<Wide<8>>();
+            for (lane, plain) in plain.iter().enumerate() {
                 let one: Vec<f64> = synthesis.coefficients(7, |_| first + lane as u64);
-                assert_eq!(one.len(), wide.len());
-                assert!(one.iter().zip(&wide).all(|(one, wide)| one.to_bits() == wide.get(lane).to_bits()));
+                assert_eq!(&one.iter().map(|c| c.to_bits()).collect::<Vec<u64>>(), plain);
             }
-            #[cfg(target_arch = "x86_64")]
-            if let Some(avx2) = pulp::x86::V3::try_new() {
-                assert_eq!(avx2.vectorize(draw()), wide);
-            }
-            #[cfg(target_arch = "x86_64")]
-            if let Some(avx512) = pulp::x86::V4::try_new() {
-                assert_eq!(avx512.vectorize(draw()), wide);
+            for isa in Isa::present() {
+                assert!(with(isa, draw()) == plain, "{isa:?}");
             }
         }
     }

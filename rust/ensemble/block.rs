@@ -4,12 +4,11 @@
 use std::ops::Range;
 
 use super::look::Look;
-use super::simd::{Isa, Work, dispatch};
+use super::simd::{Lanes, Work};
 use super::table::{Below, CHUNK, Chunk, Table};
-use super::watch::{Glance, Ride, Survey, Watched, Widths, watch_free, watch_moment, watch_stop};
+use super::watch::{Ride, Stretch, Watched, Widths, survey, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
-use crate::path::Share;
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
 use crate::road::spline::weighted;
@@ -86,23 +85,16 @@ impl<'a, L: Lane> Shared<'a, L> {
                 Below::Own { given, taps, share } => {
                     let mask = self.road.len() - 1;
                     let first = taps.first & mask;
-                    // By address, so that they stay vectors.
                     let near = match self.road.get(first..).unwrap_or_default() {
-                        [a, b, c, d, ..] => [a, b, c, d],
-                        _ => [0, 1, 2, 3].map(|k| &self.road[(first + k) & mask]),
+                        [a, b, c, d, ..] => [*a, *b, *c, *d],
+                        _ => [0, 1, 2, 3].map(|k| self.road[(first + k) & mask]),
                     };
-                    let part = |kind: usize| L::splat(given[kind]) + weighted(taps.weights[kind], near.map(|c| *c));
                     // Slope and curvature count only where the step asks for them.
-                    if self.table.kinds > 1 {
-                        *surface = share.of([part(0), part(1), part(2)]);
-                    } else {
-                        // Written at once: most of the road counts as it is.
-                        surface.elevation = part(0);
-                        if *share != Share::Whole {
-                            let unasked = L::splat(0.0);
-                            surface.elevation = share.of([surface.elevation, unasked, unasked]).elevation;
-                        }
+                    let mut parts = [L::splat(0.0); 3];
+                    for ((part, given), weights) in parts.iter_mut().zip(given).zip(taps.weights).take(self.table.kinds) {
+                        *part = L::splat(*given) + weighted(weights, near);
                     }
+                    *surface = share.of(parts);
                 }
             }
         }
@@ -261,8 +253,6 @@ pub struct Way<'a> {
     pub look: &'a Look,
     /// Whether to look for trouble after every step and not only after every stretch.
     pub closely: bool,
-    /// The instruction set of the loops.
-    pub isa: Isa,
 }
 
 impl Way<'_> {
@@ -273,15 +263,19 @@ impl Way<'_> {
     }
 }
 
-/// Most numbers that a group keeps of a stretch of steps: what is kept stays in the processor's caches.
+/// Most numbers that a group keeps of a stretch of steps.
 const KEPT: usize = 1 << 15;
+
+/// Chunks of a stretch, at most.
+fn longest(widths: &Widths) -> usize {
+    (KEPT / (widths.all() * CHUNK)).max(1)
+}
 
 /// What a worker needs again for each group, so that memory is asked for once.
 #[derive(Debug, Clone)]
 pub struct Scratch<L> {
-    /// What recovery needs, by step: of the steps of a stretch, and of the one before.
-    kept: Vec<L>,
-    glanced: Glance<L>,
+    stretch: Stretch<L>,
+    glanced: Vec<[L; 2]>,
     between: Vec<L>,
     chunks: Vec<Chunk>,
 }
@@ -289,7 +283,8 @@ pub struct Scratch<L> {
 impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        Scratch { kept: Vec::new(), glanced: Glance::new(), between: Vec::new(), chunks: Vec::new() }
+        let (stretch, glanced) = (Stretch::new(), Vec::new());
+        Scratch { stretch, glanced, between: Vec::new(), chunks: Vec::new() }
     }
 }
 
@@ -304,16 +299,14 @@ struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
     static_loads: Vec<L>,
-    kept: &'g mut Vec<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
     /// Keeps what recovery needs of a step in its row.
     #[inline(always)]
-    fn keep(&mut self, row: usize, widths: &Widths, rates: bool, bridge: bool) {
+    fn keep(&self, kept: &mut [L], widths: &Widths, rates: bool, bridge: bool) {
         let zero = L::splat(0.0);
         let Widths { coordinates, axles, felt, .. } = *widths;
-        let kept = &mut self.kept[row * widths.all()..(row + 1) * widths.all()];
         if !bridge {
             kept[..coordinates].fill(zero);
         } else if rates {
@@ -340,20 +333,18 @@ impl<L: Lane> Traveller<'_, '_, L> {
         }
     }
 
-    /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats its last row.
+    /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats the row before.
     #[inline(always)]
-    fn end(&mut self, row: usize, step: usize, widths: &Widths) {
+    fn end(&self, step: usize, [before, row]: [&mut [L]; 2]) {
         let (one, now) = (L::splat(1.0), L::splat(step as f64));
         let ends = &self.group.ends;
         let ended = ends.last.less(now);
         let ending = !(ended | now.less(ends.last));
         // A whole last step is not rounded.
         let short = !(!ending | !ends.fraction.less(one));
-        let width = widths.all();
-        for i in row * width..(row + 1) * width {
-            let (b, a) = (self.kept[i - width], self.kept[i]);
-            let cut = b + ends.fraction * (a - b);
-            self.kept[i] = L::select(ended, b, L::select(short, cut, a));
+        for (b, a) in before.iter().zip(row) {
+            let cut = *b + ends.fraction * (*a - *b);
+            *a = L::select(ended, *b, L::select(short, cut, *a));
         }
     }
 
@@ -379,7 +370,7 @@ impl<L: Lane> Traveller<'_, '_, L> {
     }
 }
 
-/// Where a stretch of steps lies.
+/// Where a chunk of steps lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Where {
     /// Before the bridge, which is at rest.
@@ -390,12 +381,12 @@ enum Where {
     Tail,
 }
 
-/// A stretch of steps being taken.
+/// A chunk of steps being taken.
 struct Stepping<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     steppers: &'s mut Steppers<L>,
     way: &'s Way<'s>,
-    widths: Widths,
+    stretch: &'s mut Stretch<L>,
     place: Where,
     steps: Range<usize>,
     go_on: &'s dyn Fn() -> bool,
@@ -406,9 +397,8 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, way, widths, place, steps, go_on } = self;
-        let rates = way.rows.by_rates();
-        let from = steps.start;
+        let Stepping { traveller, steppers, way, stretch, place, steps, go_on } = self;
+        let (rates, widths) = (way.rows.by_rates(), stretch.widths);
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps {
             if step > 0 {
@@ -417,37 +407,30 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
                     return Err(Trouble::Failed(step, Some(e)));
                 }
             }
-            let row = step - from + 1;
+            let [before, row] = stretch.row_mut(step);
             traveller.keep(row, &widths, rates, place != Where::Approach);
             if place == Where::Tail {
-                traveller.end(row, step, &widths);
+                traveller.end(step, [before, row]);
             }
             if way.closely && !traveller.sound(step) {
                 return Err(Trouble::Failed(step, None));
             }
-            if (step - from) % CHUNK == CHUNK - 1 && !go_on() {
-                return Err(Trouble::Interrupted);
-            }
         }
-        Ok(())
+        if go_on() { Ok(()) } else { Err(Trouble::Interrupted) }
     }
 }
 
-/// The same stretch being looked at.
+/// The same chunk being looked at: all but the responses at its steps.
 struct Looking<'s, L> {
     seen: &'s mut Seen<L>,
     way: &'s Way<'s>,
     static_loads: &'s [L],
-    /// Rows of its steps, and of the one before.
-    kept: &'s [L],
     ends: &'s Ends<L>,
-    widths: Widths,
     place: Where,
-    from: usize,
-    chunks: &'s [Chunk],
+    steps: Range<usize>,
     /// The next stop.
     stop: &'s mut usize,
-    glanced: &'s mut Glance<L>,
+    stretch: &'s mut Stretch<L>,
     between: &'s mut Vec<L>,
 }
 
@@ -456,26 +439,20 @@ impl<L: Lane> Work for Looking<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Looking { seen, way, kept, ends, widths, place, from, chunks, stop, .. } = self;
-        let (rows, width) = (&way.look.rows, widths.all());
-        let steps = &kept[width..];
+        let Looking { seen, way, ends, place, steps, stop, stretch, .. } = self;
+        let widths = stretch.widths;
         let last = way.table.path.steps;
         let left = |step: usize| if step + 1 < last { L::splat(1.0) } else { ends.left(step) };
-        seen.ride.take(steps, &widths, self.static_loads, from, left, place == Where::Bridge);
-        match place {
-            Where::Approach => return,
-            Where::Tail => watch_free(&mut seen.steps, rows, steps, &widths, from),
-            Where::Bridge => {
-                Survey { rows, chunks, steps, widths, from }.take(&mut seen.steps, self.glanced);
-            }
+        stretch.take(steps.len());
+        seen.ride.take(stretch, self.static_loads, left, place == Where::Bridge);
+        if place == Where::Approach {
+            return;
         }
         let jumps = if way.rows.by_rates() { widths.coordinates / 2 } else { widths.coordinates };
-        let to = from + steps.len() / width;
-        while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < to) {
-            let row = next.step - from;
-            let sides = [&kept[row * width..][..width], &kept[(row + 1) * width..][..width]];
+        while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
+            let sides = [stretch.row(next.step - 1), stretch.row(next.step)];
             let before = (next.step > last).then(|| seen.stops.clone());
-            watch_stop(&mut seen.stops, rows, next, *stop, sides, &widths, jumps, self.between);
+            watch_stop(&mut seen.stops, &way.look.rows, next, *stop, sides, &widths, jumps, self.between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
             for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
@@ -486,71 +463,90 @@ impl<L: Lane> Work for Looking<'_, L> {
     }
 }
 
+/// The responses at the steps of a stretch being looked at.
+struct Surveying<'s, L> {
+    watched: &'s mut [Watched<L>],
+    look: &'s Look,
+    stretch: &'s Stretch<L>,
+    chunks: Option<&'s [Chunk]>,
+    glanced: &'s mut Vec<[L; 2]>,
+}
+
+impl<L: Lane> Work for Surveying<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        survey(self.watched, &self.look.rows, self.stretch, self.chunks, self.glanced);
+    }
+}
+
 /// Marches a group of samples through the table.
-pub fn march<L: Lane>(
+pub fn march<L: Lanes>(
     way: &Way<'_>,
     group: &mut Group<'_, L>,
     steppers: &mut Steppers<L>,
     scratch: &mut Scratch<L>,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Seen<L>, Trouble> {
-    let Way { table, rows, look, isa, .. } = *way;
+    let Way { table, rows, look, .. } = *way;
     let steps = table.path.steps;
     let bodies = group.bodies.len();
     let widths = way.widths(bodies);
-    let width = widths.all();
-    // Whole chunks, so that each begins a stretch.
-    let longest = (KEPT / width / CHUNK).max(1) * CHUNK;
     let latest = group.ends.latest;
-    let room = (longest.min(steps + 1 - table.first).max(CHUNK) + 1) * width;
-    let Scratch { kept, glanced, between, chunks: own_chunks } = scratch;
-    kept.resize(room.max(kept.len()), L::splat(0.0));
+    let longest = longest(&widths);
+    let Scratch { stretch, glanced, between, chunks: own_chunks } = scratch;
     let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
     let speed = group.geometry.speed;
     let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
     let static_loads = steppers.bridge.static_loads();
-    let mut traveller = Traveller { group, state, static_loads, kept };
+    let mut traveller = Traveller { group, state, static_loads };
+    stretch.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
-    traveller.keep(0, &widths, rows.by_rates(), table.first == 0);
-    let mut stop = 0;
-    let mut from = 0;
+    traveller.keep(stretch.row_mut(0)[0], &widths, rows.by_rates(), table.first == 0);
+    let (mut stop, mut from) = (0, 0);
     while from <= latest {
         let (place, end, most) = if from < table.first {
-            (Where::Approach, table.first, CHUNK)
+            (Where::Approach, table.first, 1)
         } else if from <= steps {
             (Where::Bridge, steps + 1, longest)
         } else {
-            (Where::Tail, latest + 1, CHUNK)
+            (Where::Tail, latest + 1, longest)
         };
-        let to = end.min(from + most);
-        let count = to - from;
+        let to = end.min(from + CHUNK);
         if place != Where::Approach && traveller.state.modes.is_empty() {
             traveller.state.modes = vec![Coordinate::rest(); table.modes];
         }
+        if stretch.steps == 0 {
+            stretch.begin(widths, from, most.min((end - from).div_ceil(CHUNK)));
+        }
         let steppers = &mut *steppers;
-        let stepping = Stepping { traveller: &mut traveller, steppers, way, widths, place, steps: from..to, go_on };
-        dispatch(isa, stepping)?;
+        let stepping = Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: from..to, go_on };
+        L::dispatch(stepping)?;
         if !traveller.sound(to - 1) {
             return Err(Trouble::Failed(to - 1, None));
         }
-        let chunks =
-            if place == Where::Bridge { table.chunks(from, to, rows, look, own_chunks) } else { Default::default() };
         let looking = Looking {
             seen: &mut seen,
             way,
             static_loads: &traveller.static_loads,
-            kept: &traveller.kept[..(count + 1) * width],
             ends: &traveller.group.ends,
-            widths,
             place,
-            from,
-            chunks,
+            steps: from..to,
             stop: &mut stop,
-            glanced,
+            stretch,
             between,
         };
-        dispatch(isa, looking);
-        traveller.kept.copy_within(count * width..(count + 1) * width, 0);
+        L::dispatch(looking);
+        if to == end || stretch.steps == most * CHUNK {
+            // On the approach the bridge is at rest.
+            if place != Where::Approach {
+                let loaded = place == Where::Bridge;
+                let chunks = loaded.then(|| table.chunks(stretch.from, to, rows, look, own_chunks));
+                L::dispatch(Surveying { watched: &mut seen.steps, look, stretch, chunks, glanced });
+            }
+            stretch.go_on();
+        }
         from = to;
     }
     Ok(seen)
@@ -577,12 +573,15 @@ impl<L: Lane, F: Fn(usize) -> u64> Work for Drawing<'_, L, F> {
     }
 }
 
-/// Ā_st under loads, from what loads of one at each axle make of it.
+/// Ā_st under loads, from what loads of one at each axle make of it, and the loads behind it.
 #[inline(always)]
-fn combine<L: Lane>(of_one: &[f64], loads: &[L], width: usize, out: &mut Vec<L>) {
-    for i in 0..width {
+fn combine<L: Lane>(of_one: &[f64], loads: &[L], row: &mut [L]) {
+    let (coordinates, behind) = row.split_at_mut(row.len() - loads.len());
+    behind.copy_from_slice(loads);
+    let width = coordinates.len();
+    for (i, coordinate) in coordinates.iter_mut().enumerate() {
         let terms = of_one.chunks_exact(width).zip(loads);
-        out.push(terms.fold(L::splat(0.0), |sum, (shapes, load)| sum + *load * L::splat(shapes[i])));
+        *coordinate = terms.fold(L::splat(0.0), |sum, (shapes, load)| sum + *load * L::splat(shapes[i]));
     }
 }
 
@@ -602,22 +601,25 @@ impl<L: Lane> Work for Resting<'_, L> {
         let widths = Widths { felt: true, ..way.widths(0) };
         let (width, axles) = (widths.coordinates, widths.axles);
         let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-        let (mut own_chunks, mut glanced) = (Vec::new(), Glance::new());
-        let mut steps = Vec::with_capacity(CHUNK * widths.all());
-        for from in (table.first..=table.path.steps).step_by(CHUNK) {
-            let to = (from + CHUNK).min(table.path.steps + 1);
-            steps.clear();
-            for step in from..to {
-                combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, width, &mut steps);
-                steps.extend_from_slice(loads);
+        let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Stretch::new());
+        let longest = longest(&widths);
+        for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
+            let end = (start + longest * CHUNK).min(table.path.steps + 1);
+            stretch.begin(widths, start, (end - start).div_ceil(CHUNK));
+            for from in (start..end).step_by(CHUNK) {
+                let to = end.min(from + CHUNK);
+                for step in from..to {
+                    let [_, row] = stretch.row_mut(step);
+                    combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, row);
+                }
+                stretch.take(to - from);
             }
-            let chunks = table.chunks(from, to, rows, look, &mut own_chunks);
-            Survey { rows: &look.rows, chunks, steps: &steps, widths, from }.take(&mut seen.steps, &mut glanced);
+            let chunks = table.chunks(start, end, rows, look, &mut own_chunks);
+            survey(&mut seen.steps, &look.rows, &stretch, Some(chunks), &mut glanced);
         }
         for (number, stop) in table.stops.iter().enumerate() {
-            let mut then = Vec::with_capacity(width + axles);
-            combine(&stop.statics, loads, width, &mut then);
-            then.extend_from_slice(loads);
+            let mut then = vec![L::splat(0.0); width + axles];
+            combine(&stop.statics, loads, &mut then);
             watch_moment(&mut seen.stops, &look.rows, stop, number, &then);
         }
         seen
@@ -625,6 +627,6 @@ impl<L: Lane> Work for Resting<'_, L> {
 }
 
 /// The static extremes under loads that differ from sample to sample.
-pub fn rest<L: Lane>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
-    dispatch(way.isa, Resting { way, loads })
+pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
+    L::dispatch(Resting { way, loads })
 }

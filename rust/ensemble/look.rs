@@ -10,6 +10,8 @@ pub struct Row {
     pub response: usize,
     /// What multiplies the modal coordinates.
     pub factors: Vec<f64>,
+    /// 1 where such a factor is negative, else 0.
+    pub turned: Vec<usize>,
 }
 
 /// The responses of a study.
@@ -44,8 +46,9 @@ impl Look {
                     .filter(|&twin| rows.same(look.rows[twin].response, response));
                 look.row_of.push(twin.unwrap_or(look.rows.len()));
                 if twin.is_none() {
-                    let factors = (0..rows.width()).map(|i| rows.factor(response, i)).collect();
-                    look.rows.push(Row { response, factors });
+                    let factors: Vec<f64> = (0..rows.width()).map(|i| rows.factor(response, i)).collect();
+                    let turned = factors.iter().map(|&factor| usize::from(factor < 0.0)).collect();
+                    look.rows.push(Row { response, factors, turned });
                 }
                 look.chosen.push(response);
                 look.deflections.push(deflections.contains(&response));

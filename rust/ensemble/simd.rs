@@ -1,6 +1,10 @@
 //! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
 
 use crate::error::Error;
+use crate::lane::Lane;
+use crate::lane::wide::Wide;
+#[cfg(target_arch = "x86_64")]
+use crate::lane::x86::{Avx2, Avx512};
 
 /// Samples side by side in one group of lanes.
 pub const SAMPLES: usize = 8;
@@ -92,20 +96,54 @@ impl<W: Work> pulp::NullaryFnOnce for Compiled<W> {
     }
 }
 
-/// Does the work with an instruction set, or without any in particular where the processor does not have it.
-pub fn dispatch<W: Work>(isa: Isa, work: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if isa == Isa::Avx512
-            && let Some(simd) = pulp::x86::V4::try_new()
-        {
-            return simd.vectorize(Compiled(work));
-        }
-        if isa == Isa::Avx2
-            && let Some(simd) = pulp::x86::V3::try_new()
-        {
-            return simd.vectorize(Compiled(work));
-        }
+/// Lanes that work is done in.
+pub trait Lanes: Lane {
+    /// Does the work with the instruction set that these lanes are made for, which the processor must have.
+    fn dispatch<W: Work>(work: W) -> W::Output;
+}
+
+impl Lanes for f64 {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        work.run()
     }
-    pulp::NullaryFnOnce::call(Compiled(work))
+}
+
+impl<const N: usize> Lanes for Wide<N> {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        work.run()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Lanes for Avx2 {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        pulp::x86::V3::try_new().expect("this processor has AVX2").vectorize(Compiled(work))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Lanes for Avx512 {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        pulp::x86::V4::try_new().expect("this processor has AVX-512").vectorize(Compiled(work))
+    }
+}
+
+/// Something to be done in lanes yet to be chosen.
+pub trait InLanes {
+    /// What comes of it.
+    type Output;
+
+    /// Does it in these, [`SAMPLES`] side by side.
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// Does something in the lanes of an instruction set, or in plain ones where the processor does not have it.
+pub fn with<T: InLanes>(isa: Isa, what: T) -> T::Output {
+    match isa {
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 if isa.is_present() => what.run::<Avx512>(),
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 if isa.is_present() => what.run::<Avx2>(),
+        _ => what.run::<Wide<SAMPLES>>(),
+    }
 }

@@ -1,5 +1,7 @@
 //! What all samples share that move alike: where the axles are at every step, what lies under them, what they do.
 
+use std::ops::Range;
+
 use super::look::Look;
 use crate::influence::{Quantity, Responses};
 use crate::path::{ModeShapes, Pavement, Share};
@@ -12,6 +14,17 @@ use crate::step::Surface;
 /// Steps whose responses are bounded together.
 pub const CHUNK: usize = 32;
 
+/// Steps of a part of a chunk.
+pub const PART: usize = 8;
+
+/// Parts of a chunk.
+pub const PARTS: usize = CHUNK / PART;
+
+/// The step of a chunk of so many that is looked at first.
+pub fn middle(count: usize) -> usize {
+    count / 2
+}
+
 /// Most influence numbers kept ready; beyond that they are worked out again for each block of samples.
 const READY: usize = 1 << 23;
 
@@ -20,8 +33,12 @@ const READY: usize = 1 << 23;
 pub struct Chunk {
     /// On each row, by row, step and axle.
     pub influence: Vec<f64>,
+    /// The same at the step in the middle, by row and axle.
+    pub middles: Vec<f64>,
     /// Least and largest, by row and axle.
     pub bounds: Vec<[f64; 2]>,
+    /// Least and largest by row, part and axle.
+    pub parts: Vec<[f64; 2]>,
 }
 
 /// The road below an axle.
@@ -230,16 +247,25 @@ impl Table {
         let axles = self.axles();
         let to = (from + CHUNK).min(self.path.steps + 1);
         let places = &self.places[from * axles..to * axles];
+        let count = to - from;
         chunk.influence.clear();
+        chunk.middles.clear();
         chunk.bounds.clear();
+        chunk.parts.clear();
         for row in &look.rows {
             let start = chunk.influence.len();
             let influence = |place: &Place| place.map_or(0.0, |place| rows.influence_of(row.response, place));
             chunk.influence.extend(places.iter().map(influence));
-            for axle in 0..axles {
-                let own = chunk.influence[start + axle..].iter().step_by(axles);
-                let bounds = own.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &g| [low.min(g), high.max(g)]);
-                chunk.bounds.push(bounds);
+            let own = &chunk.influence[start..];
+            let bounds = |axle: usize, steps: Range<usize>| {
+                let numbers = steps.map(|step| own[step * axles + axle]);
+                numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], g| [low.min(g), high.max(g)])
+            };
+            chunk.middles.extend_from_slice(&own[middle(count) * axles..][..axles]);
+            chunk.bounds.extend((0..axles).map(|axle| bounds(axle, 0..count)));
+            for part in 0..PARTS {
+                let steps = (part * PART).min(count)..((part + 1) * PART).min(count);
+                chunk.parts.extend((0..axles).map(|axle| bounds(axle, steps.clone())));
             }
         }
     }

@@ -8,7 +8,7 @@ use super::block::{
 };
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
-use super::simd::{Isa, dispatch};
+use super::simd::{InLanes, Lanes};
 use super::table::Table;
 use super::watch::Watched;
 use super::{Kind, Study};
@@ -39,7 +39,7 @@ pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.
 pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
-    let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely: false, isa: Isa::Scalar };
+    let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely: false };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
@@ -79,8 +79,29 @@ pub struct Task<'a> {
     pub table: &'a Table,
     /// What the samples' steps have in common if the samples are alike, for whichever worker comes first to work out.
     pub couplings: &'a OnceLock<Couplings>,
-    /// The instruction set.
-    pub isa: Isa,
+}
+
+/// Some of these samples, with room for what comes of them.
+pub struct Part<'s, 'a> {
+    /// What they share.
+    pub task: Task<'a>,
+    /// Their numbers.
+    pub members: &'s [u32],
+    /// Where each is written down.
+    pub records: &'s mut [Record<'a>],
+    /// Where those that fail are.
+    pub failed: &'s mut Vec<Failure>,
+    /// Whether to go on.
+    pub go_on: &'s dyn Fn() -> bool,
+}
+
+impl InLanes for Part<'_, '_> {
+    type Output = Result<(), Error>;
+
+    fn run<L: Lanes>(self) -> Self::Output {
+        let Part { task, members, records, failed, go_on } = self;
+        task.run::<L>(members, records, failed, go_on)
+    }
 }
 
 /// What has been seen of a group.
@@ -147,7 +168,7 @@ impl Task<'_> {
     }
 
     /// Runs some samples, one group of lanes after the other; those that fail are marked.
-    pub fn run<L: Lane>(
+    pub fn run<L: Lanes>(
         &self,
         members: &[u32],
         records: &mut [Record<'_>],
@@ -237,7 +258,7 @@ impl Task<'_> {
 
     /// One group of lanes, filled up with its last sample, marched to the end.
     #[allow(clippy::too_many_arguments)] // each is one thing
-    fn group<L: Lane>(
+    fn group<L: Lanes>(
         &self,
         members: &[u32],
         places: &[usize],
@@ -249,7 +270,7 @@ impl Task<'_> {
     ) -> Result<Marched<L>, Trouble> {
         let Task { study, table, samples, .. } = *self;
         let kind: &Kind = &study.kinds[self.kind];
-        let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely, isa: self.isa };
+        let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely };
         let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
         let ready_of = |lane: usize| &ready[lane.min(ready.len() - 1)];
         let gather = |of: fn(&Ready) -> &Stepper<f64>| {
@@ -263,7 +284,7 @@ impl Task<'_> {
         });
         if let Some((synthesis, seed)) = &study.own {
             let sample = |lane: usize| samples.first + sample_of(lane) as u64;
-            dispatch(self.isa, Drawing { synthesis, seed: *seed, sample, road: roads });
+            L::dispatch(Drawing { synthesis, seed: *seed, sample, road: roads });
         }
         let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
         let ends = Ends {

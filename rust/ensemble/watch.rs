@@ -2,11 +2,11 @@
 //!
 //! A response is a sum of products, Σ factor·coordinate + Σ influence·load. Rounding being monotone, the same sum with
 //! every product at its largest over some steps is no less than any value the response takes there, to the last bit. So
-//! a glance at every few steps finds values that the extremes must reach, and of the steps between only those are looked
-//! at, one by one and in order, whose bounds reach them.
+//! a glance at one step of every chunk finds values that the extremes must reach, and only those chunks are looked at
+//! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
 
 use super::look::Row;
-use super::table::{CHUNK, Chunk, Stop};
+use super::table::{CHUNK, Chunk, PART, PARTS, Stop, middle};
 use crate::lane::Lane;
 
 /// Largest and smallest so far, and when: the number of a step, or of a stop.
@@ -56,6 +56,15 @@ impl<L: Lane> Watched<L> {
         self.min_at = L::select(below, at, self.min_at);
         self.max = value.larger(self.max);
         self.min = value.smaller(self.min);
+    }
+
+    /// Whether values within these bounds, the upper and the lower, can be new extremes in any lane, where it is known
+    /// what the extremes will reach in the end.
+    #[inline(always)]
+    fn may_grow(&self, [high, low]: [L; 2], [most, least]: [L; 2]) -> bool {
+        let above = !(!self.max.less(high) | high.less(most));
+        let below = !(!low.less(self.min) | least.less(low));
+        L::any(above | below)
     }
 }
 
@@ -127,53 +136,173 @@ impl<L: Lane> Ride<L> {
         }
     }
 
-    /// Takes in the rows of steps from number `from` on; `left` says how much of the step that follows a step the lanes
-    /// go, and sums grow where the steps are `counted`. Lanes that have ended go on as they were.
+    /// Takes in the last chunk of a stretch; `left` says how much of the step that follows a step the lanes go, and sums
+    /// grow where the steps are `counted`. Lanes that have ended go on as they were.
     #[inline(always)]
-    pub fn take(
-        &mut self,
-        rows: &[L],
-        widths: &Widths,
-        static_loads: &[L],
-        from: usize,
-        left: impl Fn(usize) -> L,
-        counted: bool,
-    ) {
+    pub fn take(&mut self, stretch: &Stretch<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let Some(chunk) = stretch.chunks().last() else { return };
+        let (widths, width, from) = (&stretch.widths, stretch.widths.all(), chunk.from);
         for (k, static_load) in static_loads.iter().enumerate() {
-            let (mut watched, [mut sum, mut squares]) = (self.loads[k], self.sums[k]);
-            let (mut aloft, mut lift_offs, mut grounded) = (self.aloft[k], self.lift_offs[k], self.grounded[k]);
-            for (i, row) in rows.chunks_exact(widths.all()).enumerate() {
-                let load = row[widths.loads() + k];
-                watched.take(load, L::splat((from + i) as f64));
-                if counted {
+            let number = widths.loads() + k;
+            let loads = || chunk.rows.chunks_exact(width).map(|row| row[number]).enumerate();
+            let [most, least] = chunk.ends[number];
+            if L::any(self.loads[k].max.less(most) | least.less(self.loads[k].min)) {
+                let mut watched = self.loads[k];
+                for (i, load) in loads() {
+                    watched.take(load, L::splat((from + i) as f64));
+                }
+                self.loads[k] = watched;
+            }
+            if counted {
+                let [mut sum, mut squares] = self.sums[k];
+                for (_, load) in loads() {
                     let deviation = load - *static_load;
                     sum = sum + deviation;
                     squares = squares + deviation * deviation;
                 }
-                // Exactly zero is what a wheel off the road carries.
-                let off = !(load.less(zero) | zero.less(load));
-                if L::any(off) || L::any(grounded.less(one)) {
-                    let now = L::select(off, zero, one);
-                    aloft = aloft + left(from + i) * (one - now);
-                    lift_offs = lift_offs + grounded * (one - now);
-                    grounded = now;
-                }
+                self.sums[k] = [sum, squares];
             }
-            (self.loads[k], self.sums[k]) = (watched, [sum, squares]);
+            // Most of the time no wheel is off the road.
+            if !L::any(!zero.less(least) | self.grounded[k].less(one)) {
+                continue;
+            }
+            let (mut aloft, mut lift_offs, mut grounded) = (self.aloft[k], self.lift_offs[k], self.grounded[k]);
+            for (i, load) in loads() {
+                // Exactly zero is what a wheel off the road carries.
+                let now = L::select(!(load.less(zero) | zero.less(load)), zero, one);
+                aloft = aloft + left(from + i) * (one - now);
+                lift_offs = lift_offs + grounded * (one - now);
+                grounded = now;
+            }
             (self.aloft[k], self.lift_offs[k], self.grounded[k]) = (aloft, lift_offs, grounded);
         }
         for (b, (largest, squares)) in self.accelerations.iter_mut().zip(&mut self.squares).enumerate() {
-            let (mut most, mut sum) = (*largest, *squares);
-            for row in rows.chunks_exact(widths.all()) {
-                let a = row[widths.accelerations() + b];
-                most = most.larger(a.magnitude());
-                if counted {
-                    sum = sum + a * a;
+            let number = widths.accelerations() + b;
+            let [most, least] = chunk.ends[number];
+            *largest = largest.larger(most.magnitude()).larger(least.magnitude());
+            if counted {
+                let mut sum = *squares;
+                for row in chunk.rows.chunks_exact(width) {
+                    sum = sum + row[number] * row[number];
                 }
+                *squares = sum;
             }
-            (*largest, *squares) = (most, sum);
         }
+    }
+}
+
+/// Steps that are kept until their responses are looked at.
+#[derive(Debug, Clone)]
+pub struct Stretch<L> {
+    /// What a step consists of.
+    pub widths: Widths,
+    /// Number of the first step.
+    pub from: usize,
+    /// How many there are.
+    pub steps: usize,
+    /// The step before, and then these.
+    rows: Vec<L>,
+    /// Largest and smallest of each number of a step, by chunk.
+    ends: Vec<[L; 2]>,
+    /// The same by part of a chunk.
+    parts: Vec<[L; 2]>,
+}
+
+/// A chunk of a stretch.
+struct Kept<'s, L> {
+    /// Number of its first step.
+    from: usize,
+    /// Its steps.
+    rows: &'s [L],
+    /// Largest and smallest of each number of a step.
+    ends: &'s [[L; 2]],
+    /// The same, part by part.
+    parts: &'s [[L; 2]],
+}
+
+impl<L: Lane> Stretch<L> {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true };
+        Stretch { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
+    }
+
+    /// Begins anew with a step of this number, with room for so many chunks.
+    pub fn begin(&mut self, widths: Widths, from: usize, chunks: usize) {
+        let width = widths.all();
+        (self.widths, self.from, self.steps) = (widths, from, 0);
+        // Never less, so that memory is asked for once.
+        let zero = L::splat(0.0);
+        self.rows.resize(self.rows.len().max((chunks * CHUNK + 1) * width), zero);
+        self.ends.resize(self.ends.len().max(chunks * width), [zero; 2]);
+        self.parts.resize(self.parts.len().max(chunks * PARTS * width), [zero; 2]);
+    }
+
+    /// Begins anew behind its last step.
+    pub fn go_on(&mut self) {
+        let width = self.widths.all();
+        self.rows.copy_within(self.steps * width..(self.steps + 1) * width, 0);
+        self.begin(self.widths, self.from + self.steps, 0);
+    }
+
+    /// The row of a step, or of the one before the first.
+    #[inline(always)]
+    pub fn row(&self, step: usize) -> &[L] {
+        let width = self.widths.all();
+        &self.rows[(step + 1 - self.from) * width..][..width]
+    }
+
+    /// The same, to be written, and the row before it.
+    #[inline(always)]
+    pub fn row_mut(&mut self, step: usize) -> [&mut [L]; 2] {
+        let width = self.widths.all();
+        let (before, row) = self.rows[(step - self.from) * width..][..2 * width].split_at_mut(width);
+        [before, row]
+    }
+
+    /// Takes in a chunk of so many steps, whose rows have been written.
+    #[inline(always)]
+    pub fn take(&mut self, count: usize) {
+        let width = self.widths.all();
+        let chunk = self.steps / CHUNK;
+        let rows = &self.rows[(self.steps + 1) * width..][..count * width];
+        let all = &mut self.ends[chunk * width..][..width];
+        let parts = self.parts[chunk * PARTS * width..][..PARTS * width].chunks_exact_mut(width);
+        for (p, (rows, parts)) in rows.chunks(PART * width).zip(parts).enumerate() {
+            for (i, (part, all)) in parts.iter_mut().zip(all.iter_mut()).enumerate() {
+                let (mut most, mut least) = (rows[i], rows[i]);
+                for row in rows[width..].chunks_exact(width) {
+                    most = row[i].larger(most);
+                    least = row[i].smaller(least);
+                }
+                *part = [most, least];
+                let [high, low] = *all;
+                *all = if p == 0 { [most, least] } else { [most.larger(high), least.smaller(low)] };
+            }
+        }
+        self.steps += count;
+    }
+
+    #[inline(always)]
+    fn chunks(&self) -> impl DoubleEndedIterator<Item = Kept<'_, L>> {
+        let width = self.widths.all();
+        (0..self.steps.div_ceil(CHUNK)).map(move |chunk| {
+            let from = chunk * CHUNK;
+            let count = CHUNK.min(self.steps - from);
+            Kept {
+                from: self.from + from,
+                rows: &self.rows[(from + 1) * width..][..count * width],
+                ends: &self.ends[chunk * width..][..width],
+                parts: &self.parts[chunk * PARTS * width..][..PARTS * width],
+            }
+        })
+    }
+}
+
+impl<L: Lane> Default for Stretch<L> {
+    fn default() -> Self {
+        Stretch::new()
     }
 }
 
@@ -190,115 +319,83 @@ fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
     value
 }
 
-/// Scratch of a [`Survey`].
-#[derive(Debug, Clone)]
-pub struct Glance<L> {
-    /// What the extremes of each response must reach.
-    glanced: Vec<[L; 2]>,
-    /// Largest and smallest of what the responses are sums of.
-    ends: Vec<[L; 2]>,
-}
-
-impl<L: Lane> Glance<L> {
-    /// Nothing yet.
-    pub fn new() -> Self {
-        Glance { glanced: Vec::new(), ends: Vec::new() }
-    }
-}
-
-impl<L: Lane> Default for Glance<L> {
-    fn default() -> Self {
-        Glance::new()
-    }
-}
-
-/// Extremes of every response over a stretch of steps with loads on the bridge.
-#[derive(Debug)]
-pub struct Survey<'a, L> {
-    /// The responses.
-    pub rows: &'a [Row],
-    /// Influence of the loads, chunk by chunk of the stretch.
-    pub chunks: &'a [Chunk],
-    /// Rows of the steps.
-    pub steps: &'a [L],
-    /// Numbers in these.
-    pub widths: Widths,
-    /// Number of the first step.
-    pub from: usize,
-}
-
-impl<L: Lane> Survey<'_, L> {
-    /// Looks at all of it.
-    #[inline(always)]
-    pub fn take(&self, watched: &mut [Watched<L>], scratch: &mut Glance<L>) {
-        // What is known when this is compiled runs much faster: the usual numbers of modes and axles.
-        macro_rules! sizes {
-            ($($c:literal $a:literal),*) => {
-                match (self.widths.coordinates, self.widths.axles) {
-                    $(($c, $a) => self.of_sizes($c, $a, watched, scratch),)*
-                    (c, a) => self.of_sizes(c, a, watched, scratch),
-                }
-            };
-        }
-        sizes!(2 2, 2 3, 2 5, 3 2, 3 3, 3 5, 4 2, 4 3, 4 5)
-    }
-
-    #[inline(always)]
-    fn of_sizes(&self, c: usize, a: usize, watched: &mut [Watched<L>], scratch: &mut Glance<L>) {
-        let Glance { glanced, ends } = scratch;
-        let width = self.widths.all();
-        let felt = c + a;
-        let chunks = || self.steps.chunks(CHUNK * width).zip(self.chunks).enumerate();
-        // The glance, at the middle of every chunk.
-        glanced.clear();
-        for (r, (Row { factors, .. }, seen)) in self.rows.iter().zip(watched.iter()).enumerate() {
-            let (mut most, mut least) = (seen.max, seen.min);
-            for (_, (steps, Chunk { influence, .. })) in chunks() {
-                let count = steps.len() / width;
-                let middle = count / 2;
-                let influence = &influence[(r * count + middle) * a..][..a];
-                let value = value(&factors[..c], influence, &steps[middle * width..][..felt]);
-                most = value.larger(most);
-                least = value.smaller(least);
+/// Looks for the extremes of every response at the steps of a stretch: `chunks` of the influence of the loads, none where
+/// there is no axle on the bridge. `glanced` is scratch.
+#[inline(always)]
+pub fn survey<L: Lane>(
+    watched: &mut [Watched<L>],
+    rows: &[Row],
+    stretch: &Stretch<L>,
+    chunks: Option<&[Chunk]>,
+    glanced: &mut Vec<[L; 2]>,
+) {
+    // What is known when this is compiled runs much faster: the usual numbers of modes and axles.
+    macro_rules! sizes {
+        ($($c:literal $a:literal),*) => {
+            match (stretch.widths.coordinates, if chunks.is_some() { stretch.widths.axles } else { 0 }) {
+                $(($c, $a) => survey_sizes($c, $a, watched, rows, stretch, chunks, glanced),)*
+                (c, a) => survey_sizes(c, a, watched, rows, stretch, chunks, glanced),
             }
-            glanced.push([most, least]);
+        };
+    }
+    sizes!(2 2, 2 3, 2 5, 3 2, 3 3, 3 5, 4 2, 4 3, 4 5)
+}
+
+/// [`survey`] with so many coordinates and axles.
+#[inline(always)]
+fn survey_sizes<L: Lane>(
+    c: usize,
+    a: usize,
+    watched: &mut [Watched<L>],
+    rows: &[Row],
+    stretch: &Stretch<L>,
+    chunks: Option<&[Chunk]>,
+    glanced: &mut Vec<[L; 2]>,
+) {
+    let free = Chunk::default();
+    let chunk_of = |chunk: usize| chunks.map_or(&free, |chunks| &chunks[chunk]);
+    let (felt, width) = (c + a, stretch.widths.all());
+    // What the extremes must reach.
+    glanced.clear();
+    for (r, (Row { factors, .. }, seen)) in rows.iter().zip(watched.iter()).enumerate() {
+        let (mut most, mut least) = (seen.max, seen.min);
+        for (chunk, kept) in stretch.chunks().enumerate() {
+            let at = middle(kept.rows.len() / width);
+            let value = value(&factors[..c], &chunk_of(chunk).middles[r * a..][..a], &kept.rows[at * width..][..felt]);
+            most = value.larger(most);
+            least = value.smaller(least);
         }
-        // Largest and smallest of every number of a step over a chunk, in memory: it is chosen between them by address.
-        ends.clear();
-        ends.resize(felt, [L::splat(0.0); 2]);
-        let ends = &mut ends[..felt];
-        for (chunk, (steps, Chunk { influence, bounds })) in chunks() {
-            let count = steps.len() / width;
-            let mut positive = true;
-            for (i, ends) in ends.iter_mut().enumerate() {
-                let (mut most, mut least) = (steps[i], steps[i]);
-                for step in 1..count {
-                    let now = steps[step * width + i];
-                    most = now.larger(most);
-                    least = now.smaller(least);
-                }
-                *ends = [most, least];
-                positive &= i < c || !L::any(least.less(L::splat(0.0)));
+        glanced.push([most, least]);
+    }
+    for (chunk, kept) in stretch.chunks().enumerate() {
+        let Chunk { influence, bounds, parts, .. } = chunk_of(chunk);
+        let count = kept.rows.len() / width;
+        let ends = &kept.ends[..felt];
+        let mut positive = true;
+        for [_, least] in &ends[c..] {
+            positive &= !L::any(least.less(L::splat(0.0)));
+        }
+        for (r, Row { factors, turned, .. }) in rows.iter().enumerate() {
+            let (factors, turned) = (&factors[..c], &turned[..c]);
+            if !watched[r].may_grow(reach(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
+                continue;
             }
-            for (r, Row { factors, .. }) in self.rows.iter().enumerate() {
-                let factors = &factors[..c];
-                let seen = &mut watched[r];
-                let [high, low] = reach(factors, &bounds[r * a..][..a], ends, positive);
-                let [most, least] = glanced[r];
-                let above = !(!seen.max.less(high) | high.less(most));
-                let below = !(!low.less(seen.min) | least.less(low));
-                if !L::any(above | below) {
+            let mut seen = watched[r];
+            for part in 0..count.div_ceil(PART) {
+                let ends = &kept.parts[part * width..][..felt];
+                let reached = reach(factors, turned, &parts[(r * PARTS + part) * a..][..a], ends, positive);
+                if !seen.may_grow(reached, glanced[r]) {
                     continue;
                 }
-                let mut own = *seen;
-                let influence = &influence[r * count * a..][..count * a];
-                for step in 0..count {
-                    let row = &steps[step * width..][..felt];
-                    let value = value(factors, &influence[step * a..][..a], row);
-                    own.take(value, L::splat((self.from + chunk * CHUNK + step) as f64));
+                let first = part * PART;
+                let influence = &influence[(r * count + first) * a..(r + 1) * count * a];
+                let mut at = (kept.from + first) as f64;
+                for (step, row) in kept.rows[first * width..].chunks_exact(width).take(PART).enumerate() {
+                    seen.take(value(factors, &influence[step * a..][..a], &row[..felt]), L::splat(at));
+                    at += 1.0;
                 }
-                *seen = own;
             }
+            watched[r] = seen;
         }
     }
 }
@@ -306,16 +403,21 @@ impl<L: Lane> Survey<'_, L> {
 /// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
 /// are all `positive`.
 #[inline(always)]
-fn reach<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
+fn reach<L: Lane>(
+    factors: &[f64],
+    turned: &[usize],
+    bounds: &[[f64; 2]],
+    ends: &[[L; 2]],
+    positive: bool,
+) -> [L; 2] {
     // A negative factor takes the other end.
     let first = L::splat(factors[0]);
-    let turned = usize::from(factors[0] < 0.0);
-    let mut high = first * ends[0][turned];
-    let mut low = first * ends[0][1 - turned];
-    for (i, &factor) in factors.iter().enumerate().skip(1) {
-        let turned = usize::from(factor < 0.0);
-        high = high + L::splat(factor) * ends[i][turned];
-        low = low + L::splat(factor) * ends[i][1 - turned];
+    let mut high = first * ends[0][turned[0]];
+    let mut low = first * ends[0][1 - turned[0]];
+    for i in 1..factors.len() {
+        let factor = L::splat(factors[i]);
+        high = high + factor * ends[i][turned[i]];
+        low = low + factor * ends[i][1 - turned[i]];
     }
     for (k, &[from, to]) in bounds.iter().enumerate() {
         let ends = &ends[factors.len() + k];
@@ -331,17 +433,6 @@ fn reach<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positiv
         }
     }
     [high, low]
-}
-
-/// Takes in steps at which no axle is on the bridge.
-#[inline(always)]
-pub fn watch_free<L: Lane>(watched: &mut [Watched<L>], rows: &[Row], steps: &[L], widths: &Widths, from: usize) {
-    for (seen, row) in watched.iter_mut().zip(rows) {
-        for (i, step) in steps.chunks_exact(widths.all()).enumerate() {
-            let value = value(&row.factors, &[], &step[..row.factors.len()]);
-            seen.take(value, L::splat((from + i) as f64));
-        }
-    }
 }
 
 /// Takes in a moment between two steps, given their rows. From coordinate number `jumps` on they jump with a load: Ä

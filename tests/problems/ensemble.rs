@@ -10,7 +10,7 @@ use spanwise::crossing::{ModalBridge, cross_all};
 use spanwise::damping::Damping;
 use spanwise::ensemble::record::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
+use spanwise::ensemble::simd::{Isa, Lanes};
 use spanwise::ensemble::together::Task;
 use spanwise::ensemble::{BLOCK, Progress, Run, Study, Workers};
 use spanwise::envelope::{Envelope, axle_loads};
@@ -18,7 +18,6 @@ use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::history::History;
 use spanwise::influence::Quantity;
-use spanwise::lane::Lane;
 use spanwise::modal::ModalDamping;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery;
@@ -318,13 +317,13 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
 }
 
 /// One sample in a lane of any kind, on the calling thread: its numbers and instants.
-pub fn one<L: Lane>(study: &Study, number: u64) -> (Vec<f64>, Vec<u32>) {
+pub fn one<L: Lanes>(study: &Study, number: u64) -> (Vec<f64>, Vec<u32>) {
     let samples = Samples::at_speed(number, 1, SPEED);
     let (layout, table) = (study.layout(&samples), study.table((0, 0)));
     let (mut numbers, mut instants) = (vec![0.0; layout.width()], vec![0; layout.instants()]);
     let record = Record { numbers: &mut numbers, instants: &mut instants };
     let (samples, table, couplings) = (&samples, &table, &OnceLock::new());
-    let task = Task { study, layout, samples, kind: 0, table, couplings, isa: Isa::Scalar };
+    let task = Task { study, layout, samples, kind: 0, table, couplings };
     task.run::<L>(&[0], &mut [record], &mut Vec::new(), &|| true).unwrap();
     (numbers, instants)
 }
