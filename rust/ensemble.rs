@@ -11,6 +11,8 @@ pub mod look;
 pub mod record;
 pub mod sample;
 pub mod simd;
+pub mod stretch;
+pub mod survey;
 pub mod table;
 pub mod together;
 pub mod watch;

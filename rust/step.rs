@@ -208,20 +208,36 @@ struct Form {
     passive: bool,
 }
 
-/// One rigid body on two axles without mass, with Coulomb friction, on a bridge of three modes.
-const USUAL: Form = Form {
-    modes: 3,
-    elements: Known { contacts: 2, rubbing: 0, coulomb: true },
-    vehicles: 1,
-    coordinates: 2,
-    plain: true,
-    classical: true,
-    bare: true,
-    passive: true,
-};
+/// One rigid body on so many axles without mass, with Coulomb friction, on its way to the bridge.
+const fn on_axles(contacts: usize) -> Form {
+    Form {
+        modes: 0,
+        elements: Known { contacts, rubbing: 0, coulomb: true },
+        vehicles: 1,
+        coordinates: 2,
+        plain: true,
+        classical: true,
+        bare: true,
+        passive: true,
+    }
+}
 
-/// The same on its way to the bridge.
-const USUAL_APPROACH: Form = Form { modes: 0, ..USUAL };
+const TWO_AXLES: Form = on_axles(2);
+const THREE_AXLES: Form = on_axles(3);
+const FOUR_AXLES: Form = on_axles(4);
+const FIVE_AXLES: Form = on_axles(5);
+
+/// On two axles on a bridge of three modes.
+const USUAL: Form = Form { modes: 3, ..TWO_AXLES };
+
+/// One rigid body on two axles with mass, on springs and dampers.
+const HALF_CAR: Form = Form {
+    elements: Known { coulomb: false, ..TWO_AXLES.elements },
+    coordinates: 4,
+    bare: false,
+    passive: false,
+    ..TWO_AXLES
+};
 
 impl Form {
     fn of<L: Lane>(modal: &ModalSolve<L>, units: &[Unit<L>], elements: &Elements<L>) -> Self {
@@ -623,18 +639,27 @@ impl<L: Lane> Stepper<L> {
         let form = Form { passive: self.form.passive || self.form.bare && geometry.steady(), ..self.form };
         geometry.advance();
         let geometry = &*geometry;
+        let known = geometry.coupling();
         let mut usual = Room::usual();
-        match (form, geometry.coupling()) {
-            (USUAL_APPROACH, _) => self.drive(USUAL_APPROACH, state, geometry, None, &mut usual.desk()),
-            (USUAL, Some(known)) => self.drive(USUAL, state, geometry, Some(known), &mut usual.desk()),
-            (USUAL, None) => self.drive(USUAL, state, geometry, None, &mut usual.desk()),
-            (form, known) => {
-                let mut room = std::mem::take(&mut self.room);
-                let driven = self.drive(form, state, geometry, known, &mut room.desk());
-                self.room = room;
-                driven
-            }
+        match (form, known) {
+            (TWO_AXLES, _) => return self.drive(TWO_AXLES, state, geometry, None, &mut usual.desk()),
+            (USUAL, Some(_)) => return self.drive(USUAL, state, geometry, known, &mut usual.desk()),
+            (USUAL, None) => return self.drive(USUAL, state, geometry, None, &mut usual.desk()),
+            _ => {}
         }
+        let mut room = std::mem::take(&mut self.room);
+        let (modes, desk) = (form.modes, &mut room.desk());
+        // With any number of modes, and thus also on the way to the bridge.
+        let driven = match (Form { modes: 0, ..form }) {
+            TWO_AXLES => self.drive(Form { modes, ..TWO_AXLES }, state, geometry, known, desk),
+            THREE_AXLES => self.drive(Form { modes, ..THREE_AXLES }, state, geometry, known, desk),
+            FOUR_AXLES => self.drive(Form { modes, ..FOUR_AXLES }, state, geometry, known, desk),
+            FIVE_AXLES => self.drive(Form { modes, ..FIVE_AXLES }, state, geometry, known, desk),
+            HALF_CAR => self.drive(Form { modes, ..HALF_CAR }, state, geometry, known, desk),
+            _ => self.drive(form, state, geometry, known, desk),
+        };
+        self.room = room;
+        driven
     }
 
     /// One step of vehicles all of whose motion is prescribed, to where `geometry` has them; with the coupling there, if

@@ -3,10 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
-use spanwise::error::Error;
-use spanwise::lane::Lane;
 use spanwise::ensemble::block::Drawing;
 use spanwise::ensemble::simd::{InLanes, Isa, Lanes, with};
+use spanwise::error::Error;
+use spanwise::lane::Lane;
 use spanwise::lane::bits::{Bits, WideBits};
 use spanwise::lane::wide::Wide;
 use spanwise::road::feature::Feature;

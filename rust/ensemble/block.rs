@@ -5,8 +5,10 @@ use std::ops::Range;
 
 use super::look::Look;
 use super::simd::{Lanes, Work};
+use super::stretch::{Stretch, Widths};
+use super::survey::survey;
 use super::table::{Below, CHUNK, Chunk, Table};
-use super::watch::{Ride, Stretch, Watched, Widths, survey, watch_moment, watch_stop};
+use super::watch::{Ride, Watched, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
 use crate::recovery::Rows;
@@ -91,7 +93,8 @@ impl<'a, L: Lane> Shared<'a, L> {
                     };
                     // Slope and curvature count only where the step asks for them.
                     let mut parts = [L::splat(0.0); 3];
-                    for ((part, given), weights) in parts.iter_mut().zip(given).zip(taps.weights).take(self.table.kinds) {
+                    for ((part, given), weights) in parts.iter_mut().zip(given).zip(taps.weights).take(self.table.kinds)
+                    {
                         *part = L::splat(*given) + weighted(weights, near);
                     }
                     *surface = share.of(parts);

@@ -139,8 +139,8 @@ macro_rules! lanes {
             #[inline(always)]
             fn any(mask: $mask) -> bool {
                 let mut any = mask.0[0];
-                for i in 1..$registers {
-                    any = $either(any, mask.0[i]);
+                for other in mask.0.into_iter().skip(1) {
+                    any = $either(any, other);
                 }
                 $negative(any)
             }

@@ -1,0 +1,154 @@
+//! Steps of samples side by side, kept until their responses are looked at, with the largest and smallest of what they
+//! consist of.
+
+use super::table::{CHUNK, PART, PARTS};
+use crate::lane::Lane;
+
+/// What a step leaves for recovery, in a row of numbers: coordinates, loads [N], vertical accelerations of the bodies
+/// [m/s²]. Where responses do not feel the loads, zeros stand in their place and the loads follow.
+#[derive(Debug, Clone, Copy)]
+pub struct Widths {
+    /// What the rows multiply.
+    pub coordinates: usize,
+    /// Axles.
+    pub axles: usize,
+    /// Bodies.
+    pub bodies: usize,
+    /// Whether responses feel the loads; by superposition they do not.
+    pub felt: bool,
+}
+
+impl Widths {
+    /// Numbers of a step.
+    #[inline(always)]
+    pub fn all(&self) -> usize {
+        self.accelerations() + self.bodies
+    }
+
+    /// Where the loads begin.
+    #[inline(always)]
+    pub fn loads(&self) -> usize {
+        if self.felt { self.coordinates } else { self.coordinates + self.axles }
+    }
+
+    /// Where the accelerations begin.
+    #[inline(always)]
+    pub fn accelerations(&self) -> usize {
+        self.loads() + self.axles
+    }
+}
+
+/// Steps that are kept until their responses are looked at.
+#[derive(Debug, Clone)]
+pub struct Stretch<L> {
+    /// What a step consists of.
+    pub widths: Widths,
+    /// Number of the first step.
+    pub from: usize,
+    /// How many there are.
+    pub steps: usize,
+    /// The step before, and then these.
+    rows: Vec<L>,
+    /// Largest and smallest of each number of a step, by chunk.
+    ends: Vec<[L; 2]>,
+    /// The same by part of a chunk.
+    parts: Vec<[L; 2]>,
+}
+
+/// A chunk of a stretch.
+pub struct Kept<'s, L> {
+    /// Number of its first step.
+    pub from: usize,
+    /// Its steps.
+    pub rows: &'s [L],
+    /// Largest and smallest of each number of a step.
+    pub ends: &'s [[L; 2]],
+    /// The same, part by part.
+    pub parts: &'s [[L; 2]],
+}
+
+impl<L: Lane> Stretch<L> {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true };
+        Stretch { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
+    }
+
+    /// Begins anew with a step of this number, with room for so many chunks.
+    pub fn begin(&mut self, widths: Widths, from: usize, chunks: usize) {
+        let width = widths.all();
+        (self.widths, self.from, self.steps) = (widths, from, 0);
+        // Never less, so that memory is asked for once.
+        let zero = L::splat(0.0);
+        self.rows.resize(self.rows.len().max((chunks * CHUNK + 1) * width), zero);
+        self.ends.resize(self.ends.len().max(chunks * width), [zero; 2]);
+        self.parts.resize(self.parts.len().max(chunks * PARTS * width), [zero; 2]);
+    }
+
+    /// Begins anew behind its last step.
+    pub fn go_on(&mut self) {
+        let width = self.widths.all();
+        self.rows.copy_within(self.steps * width..(self.steps + 1) * width, 0);
+        self.begin(self.widths, self.from + self.steps, 0);
+    }
+
+    /// The row of a step, or of the one before the first.
+    #[inline(always)]
+    pub fn row(&self, step: usize) -> &[L] {
+        let width = self.widths.all();
+        &self.rows[(step + 1 - self.from) * width..][..width]
+    }
+
+    /// The same, to be written, and the row before it.
+    #[inline(always)]
+    pub fn row_mut(&mut self, step: usize) -> [&mut [L]; 2] {
+        let width = self.widths.all();
+        let (before, row) = self.rows[(step - self.from) * width..][..2 * width].split_at_mut(width);
+        [before, row]
+    }
+
+    /// Takes in a chunk of so many steps, whose rows have been written.
+    #[inline(always)]
+    pub fn take(&mut self, count: usize) {
+        let width = self.widths.all();
+        let chunk = self.steps / CHUNK;
+        let rows = &self.rows[(self.steps + 1) * width..][..count * width];
+        let all = &mut self.ends[chunk * width..][..width];
+        let parts = self.parts[chunk * PARTS * width..][..PARTS * width].chunks_exact_mut(width);
+        for (p, (rows, parts)) in rows.chunks(PART * width).zip(parts).enumerate() {
+            for (i, (part, all)) in parts.iter_mut().zip(all.iter_mut()).enumerate() {
+                let (mut most, mut least) = (rows[i], rows[i]);
+                for row in rows[width..].chunks_exact(width) {
+                    most = row[i].larger(most);
+                    least = row[i].smaller(least);
+                }
+                *part = [most, least];
+                let [high, low] = *all;
+                *all = if p == 0 { [most, least] } else { [most.larger(high), least.smaller(low)] };
+            }
+        }
+        self.steps += count;
+    }
+
+    /// Its chunks, in order.
+    #[inline(always)]
+    pub fn chunks(&self) -> impl DoubleEndedIterator<Item = Kept<'_, L>> {
+        let width = self.widths.all();
+        (0..self.steps.div_ceil(CHUNK)).map(move |chunk| {
+            let from = chunk * CHUNK;
+            let count = CHUNK.min(self.steps - from);
+            Kept {
+                from: self.from + from,
+                rows: &self.rows[(from + 1) * width..][..count * width],
+                ends: &self.ends[chunk * width..][..width],
+                parts: &self.parts[chunk * PARTS * width..][..PARTS * width],
+            }
+        })
+    }
+}
+
+impl<L: Lane> Default for Stretch<L> {
+    fn default() -> Self {
+        Stretch::new()
+    }
+}
