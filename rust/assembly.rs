@@ -62,6 +62,8 @@ pub struct ContactPoint {
     pub row: DVector<f64>,
     /// Distance ahead of the vehicle's centre of mass in the static state [m].
     pub position: f64,
+    /// Distance behind the first contact, to the bit the same whatever the masses are [m].
+    pub behind: f64,
     /// How the contact moves along the road as the vehicle pitches: x = X + position + surge_row·q, X the centre of mass
     /// of the whole vehicle. Of one rigid body −h in pitch.
     pub surge_row: DVector<f64>,
@@ -280,7 +282,16 @@ impl Assembly {
                 assembly.suspensions.push(None);
             }
             let row = hop.clone().unwrap_or(above);
-            assembly.contacts.push(ContactPoint { row, position, surge_row: ground, share: 0.0, law: law(axle) });
+            // Counted from the first, and from the centre of mass, when all are there.
+            let behind = 0.0;
+            assembly.contacts.push(ContactPoint {
+                row,
+                position,
+                behind,
+                surge_row: ground,
+                share: 0.0,
+                law: law(axle),
+            });
             assembly.hops.push(hop);
         }
         assembly.centre(&parts);
@@ -312,6 +323,7 @@ impl Assembly {
                 .map(|((share, law), x)| ContactPoint {
                     row: none.clone(),
                     position: x - centre,
+                    behind: positions[0] - x,
                     surge_row: none.clone(),
                     share,
                     law,
@@ -385,8 +397,10 @@ impl Assembly {
         for (mass, row, _) in parts {
             add(&mut self.surge_mass, *mass, &(row - &surge));
         }
+        let front = self.contacts[0].position;
         for contact in &mut self.contacts {
             contact.surge_row -= &surge;
+            contact.behind = front - contact.position;
             contact.position -= position;
         }
         for body in &mut self.body_positions {

@@ -151,8 +151,7 @@ impl<'a> Course<'a> {
             }
             _ => None,
         };
-        let front = assembly.contacts[0].position;
-        let behind: Vec<f64> = assembly.contacts.iter().map(|c| front - c.position).collect();
+        let behind: Vec<f64> = assembly.contacts.iter().map(|contact| contact.behind).collect();
         Ok(Course {
             vehicle: &passage.vehicle,
             direction: passage.direction,
@@ -243,14 +242,19 @@ impl<'a> Course<'a> {
         if self.road.is_smooth() {
             return Ok(());
         }
-        // Without a ramp the road counts from where the last axle is at the beginning, before the vehicle's entry.
-        let first =
-            if settings.ramp > 0.0 { -settings.approach } else { self.motion.at(-self.entry).x - self.wheelbase() };
-        let (from, to) = (first, length + self.wheelbase());
+        let [from, to] = self.paved(settings, length);
         match self.direction {
             Direction::Right => self.road.check_covers(from, to),
             Direction::Left => self.road.check_covers(length - to, length - from),
         }
+    }
+
+    /// From where to where the road counts under its axles, from the end at which it enters [m].
+    pub fn paved(&self, settings: &Settings, length: f64) -> [f64; 2] {
+        // Without a ramp from where the last axle is at the beginning, before the vehicle's entry.
+        let first =
+            if settings.ramp > 0.0 { -settings.approach } else { self.motion.at(-self.entry).x - self.wheelbase() };
+        [first, length + self.wheelbase()]
     }
 
     /// The road on its way, if that is uneven.

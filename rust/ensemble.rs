@@ -9,7 +9,9 @@ pub mod alone;
 pub mod block;
 pub mod look;
 pub mod record;
+pub mod run;
 pub mod sample;
+pub mod shared;
 pub mod simd;
 pub mod stretch;
 pub mod survey;
@@ -17,15 +19,12 @@ pub mod table;
 pub mod together;
 pub mod watch;
 
-use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, OnceLock};
-
-use rayon::prelude::*;
+use std::sync::Arc;
 
 use crate::analysis::Analysis;
 use crate::assembly::{BuildUp, ContactLaw};
 use crate::course::{Course, Drive, Passage};
+use crate::crossing::MAX_AXLES;
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
 use crate::influence::Quantity;
@@ -35,14 +34,10 @@ use crate::settings::Settings;
 use crate::steps::{MAX_STEPS, Steps};
 use crate::vehicle::Vehicle;
 use look::Look;
-use record::{Failure, Layout, Record, Results};
+use record::Layout;
+pub use run::{BLOCK, Progress, Run, Workers};
 use sample::{Parameter, Samples};
-use simd::{Isa, SAMPLES};
 use table::{Advance, Ground, Table};
-use together::{Part, Task};
-
-/// Most samples that a worker takes at a time unless told otherwise.
-pub const BLOCK: usize = 256;
 
 /// Halvings of the step that a sample may ask for.
 const MOST_HALVINGS: u32 = 16;
@@ -73,42 +68,6 @@ pub struct Study {
     pub look: Look,
     /// Whether samples share the geometry.
     pub shares: bool,
-}
-
-/// Who does the work, and in which portions; none of it changes a result.
-#[derive(Debug, Clone, Copy)]
-pub struct Workers {
-    /// The instruction set.
-    pub isa: Isa,
-    /// Threads.
-    pub threads: usize,
-    /// Samples that a worker takes at a time; fewer, down to what fills its lanes, where there is not much to share out.
-    pub chunk: usize,
-}
-
-impl Workers {
-    /// As many as the machine has, or as the caller wants.
-    pub fn new(threads: Option<usize>, chunk: Option<usize>) -> Result<Self, Error> {
-        let threads = match threads {
-            Some(0) => return Err(Error::input("threads", 0, "must be 1 or more")),
-            Some(threads) if threads > 4096 => return Err(Error::input("threads", threads, "must be at most 4096")),
-            Some(threads) => threads,
-            None => std::thread::available_parallelism().map_or(1, usize::from),
-        };
-        match chunk {
-            Some(0) => Err(Error::input("chunk", 0, "must be 1 or more")),
-            chunk => Ok(Workers { isa: Isa::chosen()?, threads, chunk: chunk.unwrap_or(BLOCK) }),
-        }
-    }
-}
-
-/// What others may see of a run, and whether it shall go on.
-#[derive(Debug, Default)]
-pub struct Progress {
-    /// Samples done.
-    pub done: AtomicUsize,
-    /// Set to end the run.
-    pub stop: AtomicBool,
 }
 
 /// How a sample marches: which kind of event, and how often the step is halved.
@@ -150,6 +109,7 @@ impl Study {
             study.kinds.push(Kind { passages, bodies });
         }
         for kind in 0..study.kinds.len() {
+            study.check_axles(kind)?;
             study.check_road(kind)?;
         }
         if !shares && advance.is_some() {
@@ -164,6 +124,22 @@ impl Study {
         matches!(passage.drive.as_ref().unwrap_or(&self.settings.drive), Drive::Speeds { .. })
     }
 
+    /// Refuses more axles than a crossing can have, and steps in which one would pass the whole bridge.
+    fn check_axles(&self, kind: usize) -> Result<(), Error> {
+        let axles: usize = self.kinds[kind].passages.iter().map(|p| p.vehicle.assembly().contacts.len()).sum();
+        if axles > MAX_AXLES {
+            return Err(Error::input("vehicles", format!("{axles} axles"), format!("at most {MAX_AXLES} in all")));
+        }
+        let length = self.analysis.model.shapes.mesh().length();
+        match self.advance {
+            Some(advance) if self.shares && self.plan(kind).1 >= length => {
+                let allowed = format!("must be less than the length of the bridge, {length} m");
+                Err(Error::input("advance", format!("{advance} m"), allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses a road that repeats on the way, and contacts that cannot follow it.
     fn check_road(&self, kind: usize) -> Result<(), Error> {
         let length = self.analysis.model.shapes.mesh().length();
@@ -174,9 +150,8 @@ impl Study {
             let course = Course::new(&passage, &self.settings, "", 0)?;
             course.check_road(&self.settings, length)?;
             course.check_contact(&self.analysis.model.shapes)?;
-            // Without a ramp the axles behind the first begin on the road too.
-            let behind = if self.settings.ramp > 0.0 { 0.0 } else { course.wheelbase() };
-            let path = course.path(&self.settings, length) + behind;
+            let [from, to] = course.paved(&self.settings, length);
+            let path = to - from;
             if let Some((synthesis, _)) = self.own.as_ref().filter(|(own, _)| path > own.period()) {
                 let allowed = format!(
                     "it repeats after its period of {} m, and the path is longer; give a longer one",
@@ -236,7 +211,6 @@ impl Study {
         let contacts = &self.vehicle(kind).assembly().contacts;
         let length = model.shapes.mesh().length();
         let wheelbase = self.vehicle(kind).wheelbase();
-        let front = contacts[0].position;
         let (steps, _) = self.plan(kind);
         let steps = steps << halvings;
         let advance = (self.settings.approach + length + wheelbase) / steps as f64;
@@ -251,7 +225,7 @@ impl Study {
         let path = Advance {
             start: -self.settings.approach,
             advance,
-            behind: contacts.iter().map(|c| front - c.position).collect(),
+            behind: contacts.iter().map(|contact| contact.behind).collect(),
             steps,
             beyond,
         };
@@ -321,98 +295,6 @@ impl Study {
         (0..samples.count).map(march).collect()
     }
 
-    /// Runs all samples.
-    pub fn run(&self, samples: &Samples, workers: &Workers, progress: &Progress) -> Result<Run, Error> {
-        // Here too, not only in the workers' threads: the geometry is laid out on this one.
-        let _mode = Standard::set();
-        samples.check(&self.vehicles())?;
-        self.check_factors(samples)?;
-        let layout = self.layout(samples);
-        let count = samples.count;
-        check_room(count, &layout)?;
-        let own = if self.shares { self.marches(samples)? } else { vec![(0, 0); count] };
-        let mut distinct: BTreeMap<March, Vec<u32>> = BTreeMap::new();
-        for (sample, march) in own.iter().enumerate() {
-            distinct.entry(*march).or_default().push(sample as u32);
-        }
-        let marches: Vec<March> = distinct.keys().copied().collect();
-        let number: BTreeMap<March, u32> = marches.iter().zip(0..).map(|(&march, i)| (march, i)).collect();
-        let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
-        drop(own);
-        let go_on = || !progress.stop.load(Ordering::Relaxed);
-        let mut tables: Vec<Arc<Table>> = Vec::new();
-        for &march in marches.iter().filter(|_| self.shares) {
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
-            tables.push(Arc::new(self.table(march)));
-        }
-        let couplings = vec![OnceLock::new(); marches.len()];
-        let order: Vec<u32> = distinct.values().flatten().copied().collect();
-        let mut results = Results {
-            layout,
-            numbers: vec![0.0; count * layout.width()],
-            instants: vec![0; count * layout.instants()],
-            marches: of_samples,
-            digests: vec![0; count],
-            failures: Vec::new(),
-        };
-        let failures = Mutex::new(Vec::new());
-        // A few portions for every thread, in whole groups of lanes.
-        let share = count.div_ceil(4 * workers.threads).next_multiple_of(SAMPLES).max(SAMPLES);
-        let portions = portions(&distinct, &mut results, workers.chunk.min(share));
-        let work = || {
-            portions.into_par_iter().try_for_each(|portion| {
-                let Portion { march, members, mut records, digests } = portion;
-                let mut failed = Vec::new();
-                let (kind, _) = marches[march];
-                if self.shares {
-                    let (table, couplings) = (&tables[march], &couplings[march]);
-                    let task = Task { study: self, layout, samples, kind, table, couplings };
-                    let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
-                    simd::with(workers.isa, Part { task, members, records, failed, go_on })?;
-                } else {
-                    for (&member, record) in members.iter().zip(&mut records) {
-                        let sample = member as usize;
-                        match alone::cross(self, &layout, samples, sample, record, &mut || go_on()) {
-                            Ok(()) => {}
-                            Err(Error::Interrupted) => return Err(Error::Interrupted),
-                            Err(cause) => {
-                                record.forget();
-                                failed.push(Failure { sample, step: None, cause });
-                            }
-                        }
-                    }
-                }
-                for (record, digest) in records.iter().zip(digests) {
-                    *digest = record.digest();
-                }
-                if !failed.is_empty() {
-                    failures.lock().unwrap_or_else(|e| e.into_inner()).extend(failed);
-                }
-                progress.done.fetch_add(members.len(), Ordering::Relaxed);
-                if go_on() { Ok(()) } else { Err(Error::Interrupted) }
-            })
-        };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(workers.threads.min(count.max(1)))
-            .thread_name(|i| format!("spanwise-{i}"))
-            // For as long as the thread lives.
-            .start_handler(|_| std::mem::forget(Standard::set()))
-            .build()
-            .map_err(|e| Error::input("threads", workers.threads, e.to_string()))?;
-        pool.install(work)?;
-        results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
-        results.failures.sort_by_key(|failure| failure.sample);
-        if marches.len() > 1 {
-            put_back(&order, &mut results);
-        }
-        let refinements = marches.iter().map(|(_, halvings)| *halvings).collect();
-        let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
-        let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
-        Ok(Run { results, tables, refinements, at_rest })
-    }
-
     /// Refuses factors on what a vehicle does not have.
     fn check_factors(&self, samples: &Samples) -> Result<(), Error> {
         for factors in &samples.factors {
@@ -439,119 +321,4 @@ impl Study {
         }
         Ok(())
     }
-}
-
-/// Refuses more samples than can be numbered, or than there is memory for: a mistyped number is told at once.
-fn check_room(count: usize, layout: &Layout) -> Result<(), Error> {
-    let bytes = count as f64 * (8 * layout.width() + 4 * layout.instants() + 40) as f64;
-    if u32::try_from(count).is_ok() && bytes <= memory() {
-        return Ok(());
-    }
-    let allowed = format!("results would take {:.1} GB of memory, more than there is; use fewer", bytes / 1e9);
-    Err(Error::input("samples", count, allowed))
-}
-
-/// Memory of this machine [bytes]; where it does not say, what an address can reach. To ask the allocator would not help:
-/// many systems promise more than they have.
-fn memory() -> f64 {
-    let told = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
-        let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-        line.trim().trim_end_matches(" kB").parse::<f64>().ok()
-    });
-    told.map_or(isize::MAX as f64, |kilobytes| 1024.0 * kilobytes)
-}
-
-/// What a run leaves, with the tables that its instants refer to.
-#[derive(Debug)]
-pub struct Run {
-    /// The results.
-    pub results: Results,
-    /// By march.
-    pub tables: Vec<Arc<Table>>,
-    /// How often the step was halved, by march.
-    pub refinements: Vec<u32>,
-    /// Static extremes in these steps, largest of all responses looked at, then smallest, by march; none if samples have
-    /// their own.
-    pub at_rest: Vec<Vec<f64>>,
-}
-
-impl Run {
-    /// Time [s] and position of the front axle [m] at an instant of a sample that shares the geometry.
-    pub fn when(&self, study: &Study, samples: &Samples, sample: usize, instant: u32) -> (f64, f64) {
-        let table = &self.tables[self.results.marches[sample] as usize];
-        let h = table.path.advance / samples.speed(sample, 0);
-        match record::stop_or_step(instant) {
-            Ok(stop) => {
-                let stop = &table.stops[stop];
-                (stop.when(h), stop.position)
-            }
-            Err(step) => {
-                let (time, position) = (step as f64 * h, table.path.x(step, 0));
-                let (last, fraction) = together::end(table.path.steps, h, study.settings.tail);
-                if step < last || fraction == 1.0 {
-                    return (time, position);
-                }
-                let (before, behind) = ((step - 1) as f64 * h, table.path.x(step - 1, 0));
-                (before + fraction * (time - before), behind + fraction * (position - behind))
-            }
-        }
-    }
-}
-
-/// What a worker takes at a time.
-struct Portion<'a> {
-    march: usize,
-    members: &'a [u32],
-    records: Vec<Record<'a>>,
-    digests: &'a mut [u64],
-}
-
-/// The samples of each march in portions, with the rows that they fill, which follow each other in this order.
-fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Results, chunk: usize) -> Vec<Portion<'a>> {
-    let (width, instants) = (results.layout.width(), results.layout.instants());
-    let mut numbers = &mut results.numbers[..];
-    let mut moments = &mut results.instants[..];
-    let mut digests = &mut results.digests[..];
-    let mut portions = Vec::new();
-    for (march, members) in distinct.values().enumerate() {
-        for members in members.chunks(chunk) {
-            let n = members.len();
-            let (own_numbers, rest_numbers) = std::mem::take(&mut numbers).split_at_mut(n * width);
-            let (own_moments, rest_moments) = std::mem::take(&mut moments).split_at_mut(n * instants);
-            let (own_digests, rest_digests) = std::mem::take(&mut digests).split_at_mut(n);
-            (numbers, moments, digests) = (rest_numbers, rest_moments, rest_digests);
-            let rows = own_numbers.chunks_exact_mut(width).zip(own_moments.chunks_exact_mut(instants.max(1)));
-            let records = rows.map(|(numbers, instants)| Record { numbers, instants }).collect();
-            portions.push(Portion { march, members, records, digests: own_digests });
-        }
-    }
-    portions
-}
-
-/// Puts rows that follow each other as in `order` in the order of the samples.
-fn put_back(order: &[u32], results: &mut Results) {
-    let (width, instants) = (results.layout.width(), results.layout.instants());
-    let mut from: Vec<u32> = vec![0; order.len()];
-    for (row, &sample) in order.iter().enumerate() {
-        from[sample as usize] = row as u32;
-    }
-    for sample in 0..from.len() {
-        // Round each cycle: the row that belongs here comes in exchange for the one that stands here.
-        let mut here = sample;
-        while from[here] as usize != sample {
-            let there = from[here] as usize;
-            swap_rows(&mut results.numbers, width, here, there);
-            swap_rows(&mut results.instants, instants, here, there);
-            results.digests.swap(here, there);
-            from[here] = here as u32;
-            here = there;
-        }
-        from[here] = here as u32;
-    }
-}
-
-fn swap_rows<T>(values: &mut [T], width: usize, a: usize, b: usize) {
-    let (a, b) = (a.min(b), a.max(b));
-    let (low, high) = values.split_at_mut(b * width);
-    low[a * width..(a + 1) * width].swap_with_slice(&mut high[..width]);
 }

@@ -62,6 +62,8 @@ pub enum Error {
     NoConvergence {
         /// What did not settle.
         what: &'static str,
+        /// Number of the step.
+        step: usize,
         /// Time [s].
         time: f64,
         /// Position of the front axle [m].
@@ -82,6 +84,8 @@ pub enum Error {
     /// A state that is not a finite number.
     #[error("the response stops being finite at t = {time:.6} s (front axle at x = {position:.4} m); shorten the step")]
     NotFinite {
+        /// Number of the step.
+        step: usize,
         /// Time [s].
         time: f64,
         /// Position of the front axle [m].
@@ -93,6 +97,14 @@ pub enum Error {
 }
 
 impl Error {
+    /// The number of the step that failed, if one did.
+    pub fn step(&self) -> Option<usize> {
+        match self {
+            Error::NoConvergence { step, .. } | Error::NotFinite { step, .. } => Some(*step),
+            _ => None,
+        }
+    }
+
     /// An [`Error::Input`] from its parts.
     pub fn input(key: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
         Error::Input { key: key.into(), value: tidy(&value.to_string()), allowed: tidy(&allowed.into()) }

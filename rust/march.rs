@@ -89,10 +89,12 @@ impl<'a> March<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<History, Error> {
         let front = |geometry: &G| geometry.motion(0).x;
-        let unsettled =
-            |what: Unsettled, time: f64, position: f64| Error::NoConvergence { what: what.name(), time, position };
+        let unsettled = |what: Unsettled, step: usize, time: f64, position: f64| {
+            let what = what.name();
+            Error::NoConvergence { what, step, time, position }
+        };
         let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
-        let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0.0, front(geometry)))?;
+        let mut state = self.starter.start(&speeds, geometry).map_err(|e| unsettled(e, 0, 0.0, front(geometry)))?;
         for (travel, course) in state.travel.iter_mut().zip(self.courses) {
             let centre = course.centre(0.0);
             *travel = if course.rolls { Coordinate { a: travel.a, ..centre } } else { centre };
@@ -103,14 +105,14 @@ impl<'a> March<'a> {
             let time = n as f64 * self.h;
             let before = front(geometry);
             self.put_brakes_on(time);
-            self.stepper.advance(&mut state, geometry).map_err(|e| unsettled(e, time, before))?;
+            self.stepper.advance(&mut state, geometry).map_err(|e| unsettled(e, n, time, before))?;
             for (travel, course) in state.travel.iter_mut().zip(self.courses).filter(|(_, course)| !course.rolls) {
                 *travel = course.centre(time);
             }
             let coordinates = state.modes.iter().chain(&state.coordinates);
             let accelerations = coordinates.fold(state.travel.iter().map(|c| c.a).sum(), |sum: f64, c| sum + c.a);
             if !accelerations.is_finite() || !front(geometry).is_finite() {
-                return Err(Error::NotFinite { time, position: before });
+                return Err(Error::NotFinite { step: n, time, position: before });
             }
             self.stand(time, &mut state.travel, geometry, stop)?;
             self.check_apart(time, geometry)?;

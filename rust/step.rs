@@ -363,6 +363,9 @@ impl<C, N, P> Room<C, N, P> {
 /// Room for the usual forms.
 type UsualRoom<L> = Room<[Coordinate<L>; USUAL.modes], [L; USUAL.width()], [Prepared<L>; USUAL.all()]>;
 
+// Vehicles find room there too.
+const _: () = assert!(USUAL.coordinates <= USUAL.modes);
+
 impl<L: Lane> UsualRoom<L> {
     #[inline(always)]
     fn usual() -> Self {

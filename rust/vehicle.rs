@@ -226,8 +226,7 @@ impl Vehicle {
 
     /// Distance from the first to the last axle [m].
     pub fn wheelbase(&self) -> f64 {
-        let contacts = &self.assembly.contacts;
-        contacts[0].position - contacts[contacts.len() - 1].position
+        self.assembly.contacts.last().map_or(0.0, |last| last.behind)
     }
 
     /// Static axle loads [N] under gravity g [m/s²], front first; those of a train of forces do not depend on it.

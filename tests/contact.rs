@@ -69,6 +69,7 @@ impl Wheel {
 fn contact(axle: &Axle, static_load: f64) -> Contact<f64> {
     let point = ContactPoint {
         row: DVector::zeros(0),
+        behind: 0.0,
         position: 0.0,
         surge_row: DVector::zeros(0),
         share: static_load,

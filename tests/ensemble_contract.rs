@@ -11,10 +11,10 @@ use spanwise::assembly::Friction;
 use spanwise::bridge::Bridge;
 use spanwise::course::Passage;
 use spanwise::damping::Damping;
-use spanwise::ensemble::Study;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
+use spanwise::ensemble::{BLOCK, Study};
 use spanwise::recovery::Recovery;
 use spanwise::settings::Settings;
 use spanwise::vehicle::{Axle, Vehicle};
@@ -41,6 +41,15 @@ fn check_ways(study: &Study, samples: &Samples, alone: &[usize]) {
 #[test]
 fn nothing_about_the_work_changes_a_bit() {
     check_ways(&headline(), &Samples::at_speed(0, 70, 22.86), &[0, 17, 69]);
+}
+
+/// As many groups of lanes one after the other as a worker takes at most, and then some of the next portion.
+#[test]
+fn a_long_portion_is_as_good_as_short_ones() {
+    let (study, samples) = (headline(), Samples::at_speed(0, BLOCK + 3, 22.86));
+    let widest = Isa::chosen().unwrap();
+    let long = run_in_chunks(&study, &samples, widest, 1, BLOCK).results;
+    assert_eq!(long.hash(), run_in_chunks(&study, &samples, widest, 2, 8).results.hash());
 }
 
 /// With everything that a study allows, and all of it at work.

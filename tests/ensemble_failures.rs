@@ -9,7 +9,7 @@ use spanwise::course::Passage;
 use spanwise::ensemble::record::{Failure, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
-use spanwise::ensemble::{Run, Study};
+use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;
 use spanwise::recovery::Recovery;
 use spanwise::settings::Settings;
@@ -92,7 +92,7 @@ fn a_step_that_is_not_finite() {
     let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
     let advance = run(&study, &of(1.0), Isa::Scalar, 1).tables[0].path.advance;
     for failure in check(&study, &of(1e304), &of(1.0)) {
-        let Error::NotFinite { time, position } = failure.cause else { panic!("{:?}", failure.cause) };
+        let Error::NotFinite { time, position, .. } = failure.cause else { panic!("{:?}", failure.cause) };
         let step = failure.step.unwrap();
         let speed = 18.0 + 17.0 * problems::spread(failure.sample);
         println!("sample {}: step {step}, {time} s, {position} m", failure.sample);
@@ -138,4 +138,64 @@ fn what_overflows_is_marked() {
             assert!(results.failures.len() > if shares { 4 } else { 0 }, "{}", results.failures.len());
         }
     }
+}
+
+/// A sum of squares that overflows is no coefficient of zero.
+#[test]
+fn loads_whose_squares_overflow() {
+    let study = study(Vehicle::moving_masses(&[500.0], &[0.0]).unwrap(), 0.0);
+    let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
+    check(&study, &of(1e155), &of(1.0));
+}
+
+/// Those that are crossings of their own tell the step too.
+#[test]
+fn crossings_one_by_one_tell_the_step() {
+    let masses = Vehicle::moving_masses(&[500.0; 4], &[0.0, -0.01, -0.02, -0.03]).unwrap();
+    let passage = Passage { entry: 0.25, ..Passage::of(masses) };
+    let settings = Settings { approach: 6.0, ..Settings::at_speed(1.0) };
+    let analysis = kishan_analysis(9, Recovery::ForceSummation);
+    let study = Study::new(analysis, vec![vec![passage]], settings, None, None, &ALL).unwrap();
+    assert!(!study.shares);
+    let samples = samples(Parameter::BodyMass, 4, 1.0, 1e6);
+    let results = run(&study, &samples, Isa::Scalar, 2).results;
+    assert_eq!(results.failures.iter().map(|failure| failure.sample).collect::<Vec<_>>(), BAD);
+    for failure in results.failures {
+        let Error::NoConvergence { step, time, .. } = failure.cause else { panic!("{:?}", failure.cause) };
+        assert_eq!(failure.step, Some(step));
+        // After the entry, in steps of milliseconds.
+        assert!(time > 0.25 && (1e-5..1e-2).contains(&(time / step as f64)), "{time} s, step {step}");
+    }
+}
+
+/// What a single crossing refuses, a study does.
+#[test]
+fn studies_that_cannot_be() {
+    let refused = |vehicle: Vehicle, approach: f64, advance: f64, entry: f64| {
+        let settings = Settings { approach, ramp: 0.0, ..Settings::at_speed(SPEED) };
+        let passage = Passage { entry, ..Passage::of(vehicle) };
+        let own = (entry > 0.0).then(|| (synthesis(), SEED));
+        let advance = (advance > 0.0).then_some(advance);
+        let analysis = kishan_analysis(9, Recovery::ForceSummation);
+        Study::new(analysis, vec![vec![passage]], settings, own, advance, &ALL)
+            .and_then(|study| study.run(&Samples::at_speed(0, 1, SPEED), &Workers::new(None)?, &Progress::default()))
+            .map(|_| ())
+            .unwrap_err()
+            .to_string()
+    };
+    let train = |axles: usize, apart: f64| {
+        let positions: Vec<f64> = (0..axles).map(|k| -apart * k as f64).collect();
+        Vehicle::force_train(&vec![1e3; axles], &positions).unwrap()
+    };
+    // An axle would pass the whole bridge in a step.
+    let message = refused(train(2, 100.0), 1.0, 60.0, 0.0);
+    assert!(message.contains("advance") && message.contains("length of the bridge"), "{message}");
+    let message = refused(train(501, 0.1), 1.0, 0.5, 0.0);
+    assert!(message.contains("501 axles"), "{message}");
+    // Two million steps of five hundred axles.
+    let message = refused(train(500, 0.1), 1.0, 5e-5, 0.0);
+    assert!(message.contains("GB of memory"), "{message}");
+    // The way before the entry counts: of 128 m the road has only what is left.
+    let message = refused(kishan_vehicle(), 30.0, 0.0, 3.0);
+    assert!(message.contains("it repeats"), "{message}");
 }

@@ -179,7 +179,7 @@ fn check(case: Case) -> Result<(), TestCaseError> {
             return Ok(());
         }
     };
-    let workers = |isa, threads, chunk| spanwise::ensemble::Workers { isa, threads, chunk };
+    let workers = |isa, threads, chunk| spanwise::ensemble::Workers { isa, threads, chunk: Some(chunk) };
     let widest = Isa::present().last().unwrap();
     let run = |isa, threads, chunk| study.run(&samples, &workers(isa, threads, chunk), &Default::default());
     let found = match run(widest, 2, 5) {

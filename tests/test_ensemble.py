@@ -266,7 +266,7 @@ def test_nothing_and_one() -> None:
     assert none.settings["samples"] == 0
     one = sw.ensemble(BRIDGE, TRUCK, samples=1, speed=[20.0], road=CLASS_B, **SHORT)
     assert one.moment.max.shape == (1, len(one.sections))
-    with pytest.raises(IndexError, match="sample = 1: must be from 0 to below 1"):
+    with pytest.raises(IndexError, match="row 1: must be from 0 to below 1"):
         one.run(1)
 
 

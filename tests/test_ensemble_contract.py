@@ -220,9 +220,11 @@ def test_python_goes_on_meanwhile() -> None:
 
     thread = threading.Thread(target=tick)
     thread.start()
-    sw.ensemble(BRIDGE, TRUCK, samples=3000, **GIVEN)
-    over.set()
-    thread.join()
+    try:
+        sw.ensemble(BRIDGE, TRUCK, samples=3000, **GIVEN)
+    finally:
+        over.set()
+        thread.join()
     assert ticks >= 5
 
 

@@ -93,6 +93,7 @@ def check_close(found: sw.Ensemble, sample: int, run: sw.Run, tolerance: float =
             assert_allclose(own, expected, rtol=tolerance, atol=tolerance * np.abs(expected).max())
 
 
+@pytest.mark.filterwarnings("ignore:.*a factor on it does nothing")
 @pytest.mark.parametrize("name", [*OF_AXLES, "body_mass", "pitch_inertia"])
 @pytest.mark.parametrize("vehicle", [TRUCK, LORRY], ids=["truck", "lorry"])
 def test_one_factor_for_all_parts(vehicle: sw.Vehicle, name: str, same: Same) -> None:
@@ -203,6 +204,23 @@ def test_values_are_factors_of_what_there_is() -> None:
     assert lorry.bodies[1].springs[0].stiffness == 9e5
     scalar = sw.ensemble(BRIDGE, LORRY, samples=3, values={"suspension_stiffness": 7e5}, **GIVEN)
     assert scalar.digests[0] == one.digests[0]
+
+
+@pytest.mark.parametrize("limit", [{"factors": 0.5}, {"values": 12e3}])
+def test_initial_friction_in_newtons_whatever_the_limit(limit: dict[str, float]) -> None:
+    tables: dict[str, Any] = {"values": {"initial_friction": np.array([[5e3, -6e3], [0.0, 8e3]])}}
+    for key, number in limit.items():
+        tables.setdefault(key, {})["friction_limit"] = number
+    found = sw.ensemble(BRIDGE, TRUCK, samples=2, **tables, **GIVEN)
+    for row, expected in enumerate([[5e3, -6e3], [0.0, 8e3]]):
+        truck = found.run(row).truck
+        assert isinstance(truck, sw.Vehicle)
+        initial = [axle.initial_friction for axle in truck.axles]
+        assert initial == pytest.approx(expected, rel=1e-14)
+        assert found.axle_loads.max[row] == pytest.approx(found.run(row).axle_loads.max, rel=1e-12)
+    tables["values"]["initial_friction"] = 13e3
+    with pytest.raises(ValueError, match="within the friction limit of axle 1, 1"):
+        sw.ensemble(BRIDGE, TRUCK, samples=2, **tables, **GIVEN)
 
 
 def test_values_of_a_fleet() -> None:

@@ -69,28 +69,33 @@ def numbers(key: str, value: object) -> list[float]:
     value = _unwrapped(value)
     if isinstance(value, Real):
         return [number(key, value)]
-    if _is_list(value):
+    if is_list(value):
         return [number(f"{key}[{i}]", each) for i, each in enumerate(value)]
     raise ValueError(f"{key} = {shown(value)}: must be a number or a list of numbers")
 
 
-def count(key: str, value: object) -> int:
-    """One whole number that is not negative."""
+def whole(key: str, value: object) -> int:
+    """One whole number."""
     value = _unwrapped(value)
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise ValueError(f"{key} = {shown(value)}: must be a whole number")
-    whole = int(value)
-    if whole < 0:
+    return int(value)
+
+
+def count(key: str, value: object) -> int:
+    """One whole number that is not negative."""
+    found = whole(key, value)
+    if found < 0:
         raise ValueError(f"{key} = {shown(value)}: must not be negative")
-    if whole > sys.maxsize:
-        raise ValueError(f"{key} = {shown(value)}: is too large")
-    return whole
+    if found > sys.maxsize:
+        raise ValueError(f"{key} = {shown(value)}: is too large, must be at most {sys.maxsize}")
+    return found
 
 
 def counts(key: str, value: object) -> list[int]:
     """One whole number or several, as a list."""
     value = _unwrapped(value)
-    if _is_list(value):
+    if is_list(value):
         return [count(f"{key}[{i}]", each) for i, each in enumerate(value)]
     return [count(key, value)]
 
@@ -112,7 +117,7 @@ def word(key: str, value: object, *options: str) -> str:
 
 def pairs(key: str, value: object) -> list[tuple[object, object]]:
     """A list of pairs."""
-    if _is_list(value):
+    if is_list(value):
         found = []
         for i, each in enumerate(value):
             if not isinstance(each, list | tuple | np.ndarray) or len(each) != 2:
@@ -130,12 +135,21 @@ def array(key: str, value: object) -> NDArray[np.float64]:
         values = np.array(None)
     if values.dtype.kind not in "iuf":
         raise ValueError(f"{key} = {shown(value)}: must be a number or an array of numbers")
-    if not np.isfinite(values).all():
-        raise ValueError(f"{key} = {shown(value)}: must be finite")
+    wrong = ~np.isfinite(values)
+    if wrong.any():
+        raise ValueError(f"{first_of(key, values, wrong)}: must be finite")
     return values.astype(np.float64)
 
 
-def _is_list(value: object) -> TypeGuard[Iterable[object]]:
+def first_of(key: str, values: NDArray[Any], wrong: NDArray[np.bool_]) -> str:
+    """The first of the wrong values and its place: ``key[3] = -1``."""
+    place = tuple(map(int, np.argwhere(wrong)[0]))
+    index = f"[{', '.join(map(str, place))}]" if place else ""
+    return f"{key}{index} = {values[place]:g}"
+
+
+def is_list(value: object) -> TypeGuard[Iterable[object]]:
+    """Whether it is of several values in an order."""
     text_or_unordered = (str, bytes, Mapping, AbstractSet)
     return isinstance(value, Iterable) and not isinstance(value, text_or_unordered)
 

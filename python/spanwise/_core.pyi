@@ -292,6 +292,5 @@ def ensemble(
     speeds: _Array,
     factors: list[tuple[str, int, _Array]],
     threads: int | None,
-    chunk: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> Ensemble: ...

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from spanwise._ensemblefile import as_dict, npz_pieces
 from spanwise._files import write_files
-from spanwise.case import Case
+from spanwise.case import Case, CaseError
 from spanwise.report import json_lines
 
 if TYPE_CHECKING:
@@ -25,7 +26,9 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         help="drive over a bridge many times, each time on a random road of its own",
         description="Drive the vehicles of a case over its bridge many times, each time on a "
         "random road of its own if the case has one, and print percentiles of the largest "
-        "responses and of the impact factors. Everything is computed before any file is written.",
+        "responses and of the impact factors. Everything is computed before any file is written. "
+        "Speeds or factors that vary from crossing to crossing are given in Python, to "
+        "Case.ensemble.",
     )
     command.add_argument(
         "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
@@ -34,7 +37,11 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         "--samples", type=int, required=True, metavar="N", help="number of crossings"
     )
     command.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="seed of the random roads; 0 by default"
+        "--seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="seed of the random roads, in place of that of [road]; 0 by default",
     )
     command.add_argument(
         "--first", type=int, default=0, metavar="N", help="number of the first sample; 0 by default"
@@ -59,6 +66,21 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
     command.set_defaults(work=run)
 
 
+@contextmanager
+def _errors(options: Iterable[str]) -> Iterator[None]:
+    """Blames the option that is at fault, or the environment, and not the case."""
+    try:
+        yield
+    except CaseError as error:
+        said = str(error.__cause__)
+        key = said.split(" ")[0]
+        if key in options:
+            raise ValueError(f"--{said}") from error
+        if key == "SPANWISE_ISA":
+            raise ValueError(said) from error
+        raise
+
+
 def run(options: argparse.Namespace) -> str:
     """Computes the ensemble, writes the files asked for, and gives the text to print."""
     if options.out is not None and options.out.suffix != ".npz":
@@ -69,13 +91,9 @@ def run(options: argparse.Namespace) -> str:
         for key in ("modes", "threads")
         if getattr(options, key) is not None
     }
-    found = case.ensemble(
-        samples=options.samples,
-        seed=options.seed,
-        first=options.first,
-        progress=sys.stderr.isatty(),
-        **given,
-    )
+    given |= {key: getattr(options, key) for key in ("samples", "seed", "first")}
+    with _errors(given):
+        found = case.ensemble(**given, progress=sys.stderr.isatty())
     text = found.summary() + "\n"
     files: list[tuple[Path, Iterable[bytes]]] = []
     if options.json is not None:

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from spanwise._files import write_files
-from spanwise._traffictable import passage_table
+from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import plain
 from spanwise._vehicletable import table_of
 from spanwise.population import FACTORS, Ensemble
@@ -66,9 +66,9 @@ def settings(ensemble: Ensemble) -> dict[str, Any]:
     """What the ensemble was made of, in plain values, as a case file has it."""
     recipe = ensemble._recipe
     events = [
-        [passage_table(each) for each in event]
-        if len(event) > 1
-        else {"vehicle": table_of(event[0].vehicle)}
+        {"vehicle": table_of(event[0].vehicle)}
+        if is_alone(event)
+        else [passage_table(each) for each in event]
         for event in recipe.events
     ]
     given = dict(ensemble.settings)

@@ -3,24 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise.columns import SampleExtremes
+from spanwise._events import Event
+from spanwise._recipe import Recipe
+from spanwise._variation import Factors
+from spanwise.columns import ROUNDING, SampleExtremes, Sense
 from spanwise.population import FACTORS, Ensemble
 from spanwise.roads import ISO8608, Road, Sum
-from spanwise.traffic import plain_drive
+from spanwise.summary import _road as road_in_words
+from spanwise.traffic import Passage, plain_drive
+from spanwise.traffic import Speeds as SpeedsInTime
 
-if TYPE_CHECKING:
-    from spanwise._events import Event
+Array = NDArray[np.float64]
 
 #: Percentiles that are shown.
 PERCENTILES: Final = (5.0, 50.0, 95.0, 99.0)
 
-#: Failures that are shown.
+#: Failures and kinds of event that are shown.
 SHOWN: Final = 5
+
+#: Samples that should lie beyond a percentile for it to say much.
+BEYOND: Final = 10
+
+#: Width of the names of rows.
+NAME: Final = 30
+
+#: Which extremes a sense is about.
+SIDES: Final[dict[Sense, str]] = {"positive": "max", "negative": "min", "either": "both"}
 
 #: Rows of extremes: name, quantity, side, factor from SI.
 ROWS: Final = (
@@ -38,38 +52,54 @@ def summary(ensemble: Ensemble) -> str:
     """What crossed what and how fast it was, percentiles, and samples that failed."""
     lines = [*_description(ensemble), ""]
     if ensemble.samples > len(ensemble.failures):
-        lines += [*_extremes(ensemble), "", *_factors(ensemble), "", *_ride(ensemble)]
+        lines += [*_extremes(ensemble), "", *_factors(ensemble), "", *_largest(ensemble), ""]
+        lines += [*_few(ensemble), *_ride(ensemble)]
     lines += _failures(ensemble)
     return "\n".join(lines).rstrip()
+
+
+def differ(static: Array) -> bool:
+    """Whether static values, one row for each sample, differ by more than rounding."""
+    if static.ndim < 2 or np.isnan(static).all():
+        return False
+    there = static[:, ~np.isnan(static).all(axis=0)]
+    spread = np.nanmax(there, axis=0) - np.nanmin(there, axis=0)
+    return bool(spread.max() > ROUNDING * np.nanmax(np.abs(there)))
 
 
 def _description(ensemble: Ensemble) -> Iterator[str]:
     recipe, settings = ensemble._recipe, ensemble.settings
     failed = f", {len(ensemble.failures)} failed" if ensemble.failures else ""
     yield (
-        f"ensemble  {ensemble.samples} samples from number {ensemble.first} of seed "
+        f"ensemble  {_many(ensemble.samples)} from number {ensemble.first} of seed "
         f"{ensemble.seed}{failed}"
     )
     yield f"bridge    {ensemble.bridge!r}; {len(ensemble.frequencies)} modes"
-    for number, event in enumerate(recipe.events):
+    for number, event in enumerate(recipe.events[:SHOWN]):
         kind = f"kind {number}: " if len(recipe.events) > 1 else ""
-        yield f"vehicle   {kind}{_event(event)}"
-    speeds = recipe.speeds.column
-    if ensemble.speed is not None:
-        span = (
-            f"{speeds.min():g}"
-            if np.ptp(speeds) == 0.0
-            else f"{speeds.min():g} to {speeds.max():g}"
-        )
+        yield f"vehicle   {kind}{', '.join(map(_passage, event))}"
+        yield from _own_roads(event)
+    if len(recipe.events) > SHOWN:
+        yield f"          and {len(recipe.events) - SHOWN} kinds more"
+    if ensemble.speed is not None and recipe.speeds.column.size > 0:
         drive = plain_drive(recipe.drive)
-        yield f"          {span} m/s, {drive if isinstance(drive, str) else drive['kind']}"
-    yield f"road      {_road(recipe.road, recipe.own)}"
+        name = drive if isinstance(drive, str) else drive["kind"]
+        yield f"          {_span(recipe.speeds.column, 'g')} m/s, {name}"
+    passages = [each for event in recipe.events for each in event]
+    if all(each.road is not None for each in passages):
+        one = "its own, see vehicle" if len(passages) == 1 else "each vehicle's own"
+        yield f"road      {one}"
+    else:
+        yield f"road      {_road(recipe.road, recipe.own)}"
     for each in recipe.factors:
-        yield f"varied    {each.name} from {each.values.min():.4g} to {each.values.max():.4g}"
+        yield _factor(each)
+    if ensemble.samples > 1 and _alike(recipe):
+        yield "note      all samples are alike: nothing is random"
     yield (
         f"crossing  approach {settings['approach']:g} m, tail {settings['tail']:g} s; recovery by "
         f"{settings['recovery']}; {len(ensemble.sections)} sections"
     )
+    yield f"step      {_step(ensemble)}"
     way = (
         "side by side, for they share their geometry"
         if ensemble.shares_geometry
@@ -83,8 +113,19 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
     yield f"hash      {ensemble.hash}"
 
 
-def _event(event: Event) -> str:
-    return ", ".join(repr(each.vehicle) if len(event) == 1 else repr(each) for each in event)
+def _passage(passage: Passage) -> str:
+    """The vehicle, and how it crosses if not as all do; roads have lines of their own."""
+    without = replace(passage, road=None)
+    plain = without == Passage(vehicle=passage.vehicle)
+    return repr(passage.vehicle) if plain else repr(without)
+
+
+def _own_roads(event: Event) -> Iterator[str]:
+    """The roads of vehicles that do not take that of the ensemble."""
+    for number, each in enumerate(event):
+        if each.road is not None:
+            who = f"vehicle {number + 1} " if len(event) > 1 else ""
+            yield f"          {who}on a road of its own: {road_in_words(each.road)}"
 
 
 def _road(shared: Road, own: ISO8608 | None) -> str:
@@ -96,10 +137,65 @@ def _road(shared: Road, own: ISO8608 | None) -> str:
     return " + ".join(words) or "smooth"
 
 
+def _span(values: Array, form: str) -> str:
+    """One value, or the least and the largest."""
+    least, most = format(values.min(), form), format(values.max(), form)
+    return least if least == most else f"{least} to {most}"
+
+
+def _factor(factors: Factors) -> str:
+    values = factors.values
+    if values.size == 0:
+        return f"varied    {factors.name}"
+    if (values == values[0]).all():
+        found = ", ".join(f"{each:.4g}" for each in values[0])
+        if (values[0] == values[0, 0]).all():
+            found = f"{values[0, 0]:.4g}"
+        return f"factor    {factors.name} {found} for all samples"
+    return f"varied    {factors.name} from {values.min():.4g} to {values.max():.4g}"
+
+
+def _alike(recipe: Recipe) -> bool:
+    """Whether all samples are the same crossing."""
+    used = np.unique(recipe.kinds) if len(recipe.kinds) else np.zeros(1, dtype=np.uint32)
+    by_sample = [each.values for each in recipe.factors]
+    for passage in recipe.event(0):
+        if passage.speed is None and not isinstance(passage.drive or recipe.drive, SpeedsInTime):
+            column = recipe.speeds.column
+            by_sample.append(column.reshape(1 if len(column) == 1 else recipe.samples, -1))
+    constant = all((each == each[:1]).all() for each in by_sample)
+    return recipe.own is None and len(used) == 1 and constant
+
+
+def _step(ensemble: Ensemble) -> str:
+    core, column = ensemble._core, ensemble._recipe.speeds.column
+    if ensemble.samples > 0 and core.step(0) is not None:
+        # All samples of a march take steps of one way: the fastest has the shortest of them.
+        marches = np.asarray(core.marches)
+        speeds = np.broadcast_to(column, len(marches))
+        order = np.lexsort((speeds, marches))
+        first = np.flatnonzero(np.diff(marches[order], prepend=-1))
+        last = np.append(first[1:] - 1, len(order) - 1)
+        found = [core.step(int(i)) for i in order[np.concatenate([first, last])]]
+        return f"{_span(np.array([each[0] for each in found if each is not None]), '.4g')} s"
+    given = ensemble.settings.get("step")
+    if given is not None:
+        return f"at most {given:.4g} s"
+    return 'of each sample as for cross, run(i).settings["step"] tells'
+
+
+def _many(samples: int) -> str:
+    return f"{samples} sample{'' if samples == 1 else 's'}"
+
+
+def _head(title: str) -> str:
+    percentiles = "".join(f"{f'{p:g} %':>10}" for p in PERCENTILES)
+    return f"{title:<{NAME}}{percentiles}{'max':>10}"
+
+
 def _extremes(ensemble: Ensemble) -> Iterator[str]:
     """Of the largest along the bridge in each sample."""
-    head = "".join(f"{f'{p:g} %':>10}" for p in PERCENTILES)
-    yield f"{'largest in a sample':<24}{head}{'max':>10}{'static':>10}{'at':>14}"
+    rows, varied = [], False
     for name, quantity, side, scale in ROWS:
         if quantity != "axle_loads" and quantity not in ensemble.quantities:
             continue
@@ -108,18 +204,42 @@ def _extremes(ensemble: Ensemble) -> Iterator[str]:
             continue
         dynamic, static = (scale * each for each in _one_side(extremes, side))
         most = np.nanmax(dynamic, axis=1, initial=-np.inf)
-        sound = most[np.isfinite(most)]
+        sound = np.isfinite(most)
         where = int(np.unravel_index(int(np.nanargmax(dynamic)), dynamic.shape)[1])
-        place = f"{extremes.x[where]:.0f}" if quantity == "axle_loads" else None
-        at = f"axle {place}" if place else f"x = {extremes.x[where]:.3f} m"
-        columns = [*np.percentile(sound, PERCENTILES), sound.max(), np.nanmax(static)]
-        yield f"{name:<24}{''.join(f'{value + 0.0:>10.3f}' for value in columns)}{at:>14}"
-    yield "static: the largest under the static axle loads; at: where the largest of all occurs"
+        beside = _along(static[sound] if static.ndim == 2 else static[None])
+        varied = varied or differ(beside[:, None])
+        columns = [*np.percentile(most[sound], PERCENTILES), most[sound].max(), np.median(beside)]
+        rows.append((_all_the_way(ensemble, name, quantity), columns, _at(extremes, where, name)))
+    width = 16 if varied else 10
+    title = "static, median" if varied else "static"
+    yield f"{_head('largest in a sample')}{title:>{width}}{'at':>14}"
+    for name, columns, at in rows:
+        numbers = [f"{value + 0.0:>10.3f}" for value in columns]
+        yield f"{name:<{NAME}}{''.join(numbers[:-1])}{numbers[-1]:>{width}}{at:>14}"
+    if varied:
+        yield (
+            "static, median: the largest under the static axle loads, which differs from sample "
+            "to sample"
+        )
+        yield "at: where the largest of all occurs"
+    else:
+        yield "static: the largest under the static axle loads; at: where the largest of all occurs"
 
 
-def _one_side(
-    extremes: SampleExtremes, side: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _all_the_way(ensemble: Ensemble, name: str, quantity: str) -> str:
+    """The name of a row; axle loads are those of the whole way, not on the bridge alone."""
+    if quantity != "axle_loads" or ensemble.settings["approach"] == 0.0:
+        return name
+    head, bracket, unit = name.partition(" [")
+    return f"{head}, approach too{bracket}{unit}"
+
+
+def _at(extremes: SampleExtremes, where: int, name: str) -> str:
+    x = extremes.x[where]
+    return f"axle {x:.0f}" if name.startswith("axle") else f"x = {x:.3f} m"
+
+
+def _one_side(extremes: SampleExtremes, side: str) -> tuple[Array, Array]:
     if side == "max":
         return extremes.max, extremes.static_max
     if side == "min":
@@ -130,28 +250,96 @@ def _one_side(
     )
 
 
+def _by_sense(extremes: SampleExtremes, sense: Sense) -> tuple[Array, Array]:
+    """Dynamic and static values by sample, larger where they matter; one row where all share it."""
+    sign = -1.0 if sense == "negative" else 1.0
+    dynamic, static = _one_side(extremes, SIDES[sense])
+    return sign * dynamic, np.atleast_2d(sign * static)
+
+
+def _along(values: Array) -> Array:
+    """The largest along the bridge in each sample; NaN where there is none."""
+    found: Array = np.nanmax(values, axis=1, initial=-np.inf)
+    return np.where(np.isfinite(found), found, np.nan)
+
+
+def _medians(values: Array) -> Array:
+    """By section, over the samples; minus infinity where there is no value."""
+    columns = (each[~np.isnan(each)] for each in values.T)
+    return np.array([np.median(each) if len(each) else -np.inf for each in columns])
+
+
+def governing(dynamic: Array, static: Array) -> int:
+    """The section of the largest static value; of some that are alike, of the largest dynamic one.
+
+    On a symmetric bridge rounding alone tells static values apart.
+    """
+    beside = _medians(static)
+    most = beside.max()
+    alike = np.flatnonzero(beside >= most - ROUNDING * abs(most))
+    return int(alike[np.argmax(_medians(dynamic[:, alike]))]) if len(alike) > 1 else int(alike[0])
+
+
 def _factors(ensemble: Ensemble) -> Iterator[str]:
     """Impact factors where the static value is largest."""
-    head = "".join(f"{f'{p:g} %':>10}" for p in PERCENTILES)
-    yield f"{'impact factor':<24}{'mean':>10}{head}{'max':>10}{'at':>14}"
+    yield f"{_with_mean('impact factor')}{'at':>14}"
     for name, (quantity, sense) in FACTORS.items():
         if quantity != "axle_loads" and quantity not in ensemble.quantities:
             continue
         extremes: SampleExtremes = getattr(ensemble, quantity)
-        side = {"positive": "max", "negative": "min", "either": "both"}[sense]
-        sign = -1.0 if sense == "negative" else 1.0
-        static = np.nanmean(np.atleast_2d(sign * _one_side(extremes, side)[1]), axis=0)
-        where = int(np.nanargmax(static))
+        where = governing(*_by_sense(extremes, sense))
         found = ensemble.impact_factors(name)[:, where]
-        found = found[np.isfinite(found)]
-        x = extremes.x[where]
-        at = f"axle {x:.0f}" if name == "axle_loads" else f"x = {x:.3f} m"
-        if len(found) == 0:
-            yield f"{name:<24}{'-':>10}"
+        at = _at(extremes, where, name)
+        yield _factor_row(_all_the_way(ensemble, name, quantity), found, at)
+    yield (
+        "at: the one section, support or axle where the static value is largest; of static values "
+        "alike"
+    )
+    yield "the one with the larger dynamic value, by their medians"
+    yield "factors far from where a response governs are to be read with the response itself"
+
+
+def _largest(ensemble: Ensemble) -> Iterator[str]:
+    """The largest dynamic value of a sample by its largest static value, wherever they are."""
+    yield _with_mean("largest by largest")
+    for name, (quantity, sense) in FACTORS.items():
+        if quantity not in ensemble.quantities:
             continue
-        columns = [found.mean(), *np.percentile(found, PERCENTILES), found.max()]
-        yield f"{name:<24}{''.join(f'{value:>10.3f}' for value in columns)}{at:>14}"
-    yield "at: where the static value is largest"
+        extremes: SampleExtremes = getattr(ensemble, quantity)
+        dynamic, static = map(_along, _by_sense(extremes, sense))
+        magnitude = _along(np.atleast_2d(_one_side(extremes, "both")[1]))
+        found = np.full(len(dynamic), np.nan)
+        there = np.broadcast_to(static > ROUNDING * magnitude, found.shape)
+        np.divide(dynamic, static, out=found, where=there)
+        yield _factor_row(name, found, "")
+    yield (
+        "of each sample the largest dynamic value anywhere along the bridge by the largest static "
+        "one anywhere"
+    )
+
+
+def _with_mean(title: str) -> str:
+    head = _head("")
+    return f"{title:<{NAME}}{'mean':>10}{head[NAME:]}"
+
+
+def _factor_row(name: str, found: Array, at: str) -> str:
+    found = found[np.isfinite(found)]
+    if len(found) == 0:
+        return f"{name:<{NAME}}{'-':>10}"
+    columns = [found.mean(), *np.percentile(found, PERCENTILES), found.max()]
+    return f"{name:<{NAME}}{''.join(f'{value:>10.3f}' for value in columns)}{at:>14}".rstrip()
+
+
+def _few(ensemble: Ensemble) -> Iterator[str]:
+    """Which of the percentiles rest on too few samples."""
+    samples = ensemble.samples - len(ensemble.failures)
+    weak = [f"{p:g} %" for p in PERCENTILES if p * samples > 100.0 * (samples - BEYOND)]
+    if not weak or _alike(ensemble._recipe):
+        return
+    listed = " and ".join(filter(None, [", ".join(weak[:-1]), weak[-1]]))
+    yield f"of {_many(samples)} {listed} say little: fewer than {BEYOND} lie beyond"
+    yield ""
 
 
 def _ride(ensemble: Ensemble) -> Iterator[str]:

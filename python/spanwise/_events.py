@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import array, shown
+from spanwise._checks import array, first_of, shown
 from spanwise._traffictable import is_random
 from spanwise._wheels import Wheels
 from spanwise.crossing import passages_of
 from spanwise.roads import ISO8608, Road, Sum
 from spanwise.roads.base import total
 from spanwise.traffic import Drive, Passage, core_drive
+from spanwise.traffic import Speeds as SpeedsInTime
 
 Array: TypeAlias = NDArray[np.float64]
 Event: TypeAlias = tuple[Passage, ...]
@@ -118,7 +119,7 @@ class Speeds:
     Attributes
     ----------
     given : float or ndarray or None
-        As the caller gave them.
+        As the caller gave them; where a passage has its own, that.
     column : ndarray
         As the core takes them: one for all, one for each sample, or one for each vehicle of it.
     """
@@ -146,11 +147,72 @@ def speeds_of(speed: object, events: Sequence[Event], samples: int) -> Speeds:
     if values.shape not in allowed and values.shape != (samples, 1):
         shapes = " or ".join(map(str, allowed))
         raise ValueError(f"speed = shape {values.shape}: must be a number or of shape {shapes}")
-    for place in np.argwhere(~(values > 0.0))[:1]:
-        key = ", ".join(map(str, place))
+    wrong = ~(values > 0.0)
+    if wrong.any():
+        raise ValueError(f"{first_of('speed', values, wrong)}: must be finite and greater than 0")
+    return Speeds(values, np.ascontiguousarray(values).ravel())
+
+
+def refuse_unused(speeds: Speeds, events: Sequence[Event], drive: Drive) -> None:
+    """Refuses speeds that no passage of any kind uses, for all have their own."""
+    given = speeds.given
+    if given is None:
+        return
+    used = _used(events, drive).any(axis=0)
+    what = f"{given:g}" if isinstance(given, float) else f"shape {given.shape}"
+    if not used.any():
         raise ValueError(
-            f"speed[{key}] = {values[tuple(place)]:g}: must be finite and greater than 0"
+            f"speed = {what}: not used, for every passage has a speed of its own; leave one of "
+            "the two out"
         )
+    if isinstance(given, float) or given.shape[1:] != used.shape:
+        return
+    for k in np.flatnonzero(~used):
+        if (given[:, k] != given[:1, k]).any():
+            raise ValueError(
+                f"speed[:, {k}] = {given[:, k].min():g} to {given[:, k].max():g}: not used, for "
+                f"vehicles[{k}] has a speed of its own; leave it out there, or give one number in "
+                "this column"
+            )
+
+
+def _used(events: Sequence[Event], drive: Drive) -> NDArray[np.bool_]:
+    """Whether the speed of the ensemble is that of a vehicle, by kind and vehicle."""
+    found = np.zeros((len(events), max(map(len, events))), dtype=np.bool_)
+    for number, event in enumerate(events):
+        for k, passage in enumerate(event):
+            in_time = isinstance(passage.drive or drive, SpeedsInTime)
+            found[number, k] = passage.speed is None and not in_time
+    return found
+
+
+def speeds_told(
+    speeds: Speeds,
+    events: Sequence[Event],
+    kinds: NDArray[np.uint32],
+    samples: int,
+    drive: Drive,
+) -> Speeds:
+    """The speeds with those that passages bring in their places, as far as these have one."""
+    given = speeds.given
+    if given is None or all(each.speed is None for event in events for each in event):
+        return speeds
+    used = _used(events, drive)
+    by_vehicle = isinstance(given, np.ndarray) and given.shape[1:] == used.shape[1:]
+    width = used.shape[1] if by_vehicle else 1
+    before = np.reshape(given, (-1, width))
+    columns = np.broadcast_to(before, (samples, width)).copy()
+    for number, event in enumerate(events):
+        rows = kinds == number if len(events) > 1 else slice(None)
+        for k in range(width):
+            own = {each.speed for each in (event[k : k + 1] if by_vehicle else event)}
+            # One number cannot tell several, and what nothing uses must not differ.
+            told = not by_vehicle or len(events) == 1 or used[:, k].any()
+            if told and len(own) == 1 and (speed := own.pop()) is not None:
+                columns[rows, k] = speed
+    if (columns == before).all():
+        return speeds
+    values = columns.reshape(given.shape) if isinstance(given, np.ndarray) else columns[:, 0]
     return Speeds(values, np.ascontiguousarray(values).ravel())
 
 
@@ -170,6 +232,8 @@ def speeds_by_kind(
     if len(events) == 1:
         own = events[0][0].speed
         return speeds if own is None else Speeds(speeds.given, np.array([own]))
+    if all(passage.speed is None for (passage,) in events):
+        return speeds
     column = np.broadcast_to(speeds.column, samples).copy()
     for number, ((passage,)) in enumerate(events):
         if passage.speed is not None:

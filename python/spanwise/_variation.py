@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import array, shown
+from spanwise._checks import array, first_of, shown
 from spanwise._events import Event
 from spanwise._keys import suggestion
 from spanwise.trains import ForceTrain, MovingMasses
@@ -39,6 +39,14 @@ OF_SUSPENSIONS: Final = (
     "friction_limit",
     "initial_friction",
 )
+
+
+#: Parameters of the bodies, and those of the bridge; the others are of the axles.
+OF_BODIES: Final = ("body_mass", "pitch_inertia")
+OF_BRIDGES: Final = tuple(name for name, attribute in ATTRIBUTES.items() if attribute is None)
+
+#: Parameters that vehicles cannot do without.
+ABOVE_ZERO: Final = ("body_mass", "pitch_inertia", "tyre_stiffness", "suspension_stiffness")
 
 
 @dataclass(frozen=True)
@@ -76,11 +84,110 @@ def factors_of(
     found = [
         Factors(name, _columns("factors", name, each, samples)) for name, each in given.items()
     ]
-    for name, each in absolute.items():
+    # The limit first: initial friction counts by what the limit of a sample is.
+    for name, each in sorted(absolute.items(), key=lambda item: item[0] == "initial_friction"):
         columns = _columns("values", name, each, samples)
-        found.append(Factors(name, _relative(name, columns, events, kinds, samples)))
+        limits = [other.values for other in found if other.name == "friction_limit"]
+        if name == "initial_friction" and limits:
+            relative = _relative(name, columns, events, kinds, samples, limits[0])
+        else:
+            relative = _relative(name, columns, events, kinds, samples)
+        found.append(Factors(name, relative))
     _refuse_parts_of_mixed(found, events)
+    for factor in found:
+        if factor.name in given:
+            _check_width(factor, events)
     return found
+
+
+def refuse_overdamped(factors: Sequence[Factors], ratios: Sequence[float], first: int) -> None:
+    """Refuses factors that bring the damping of the bridge to its critical value."""
+    most = max(ratios, default=0.0)
+    if not 0.0 <= most < 1.0:  # refused by itself
+        return
+    for each in factors:
+        if each.name != "bridge_damping":
+            continue
+        wrong = each.values[:, :1] * most >= 1.0
+        if wrong.any():
+            row = int(np.flatnonzero(wrong)[0])
+            factor = each.values[row, 0]
+            one = len(each.values) == 1
+            raise ValueError(
+                f"factors['bridge_damping']{'' if one else f'[{row}]'} = {factor:g}: makes of "
+                f"damping = {most:g} in {'every sample' if one else f'sample {first + row}'} "
+                f"{factor * most:g} of critical; must stay below 1"
+            )
+
+
+def idle(
+    factors: Sequence[Factors], events: Sequence[Event], bridge: Mapping[str, Any]
+) -> Iterator[str]:
+    """What to say of factors on what is 0 wherever they would act; `bridge` has its damping."""
+    all_ = [each.vehicle for event in events for each in event]
+    vehicles = [each for each in all_ if isinstance(each, Vehicle)]
+    for each in factors:
+        name, there = each.name, False
+        if name == "bridge_damping":
+            matrix = bridge["damping_matrix"]
+            there = bool(np.any(bridge["damping"] if matrix is None else matrix))
+            what = "damping"
+        elif name == "bridge_stiffness" or len(vehicles) < len(all_):
+            continue
+        else:
+            of_springs = name in OF_SUSPENSIONS and each.values.shape[1] == 1
+            there = any(
+                _nominal(name, vehicle).any() or (of_springs and _springs_have(name, vehicle))
+                for vehicle in vehicles
+            )
+            what = ATTRIBUTES[name] or name
+        if not there:
+            yield f"{name}: the {what} is 0, and a factor on it does nothing"
+
+
+def _springs_have(name: str, vehicle: Vehicle) -> bool:
+    """Whether a spring between bodies has what a single factor varies along."""
+    attribute = (ATTRIBUTES[name] or name).removeprefix("suspension_")
+    springs = [each for body in vehicle.parts for each in body.springs]
+    return any(getattr(each, attribute) != 0.0 for each in springs)
+
+
+def _check_width(factors: Factors, events: Sequence[Event]) -> None:
+    """Refuses factors by part where a kind of event has another number of parts."""
+    name, width = factors.name, factors.values.shape[1]
+    if width == 1:
+        return
+    said = f"factors[{name!r}] = {width} factors a sample"
+    if name in OF_BRIDGES:
+        raise ValueError(f"{said}: must be one for each sample, for there is one bridge")
+    for number, event in enumerate(events):
+        parts = _parts(name, event)
+        if width != parts:
+            kind = f"kind {number}" if len(events) > 1 else "the event"
+            raise ValueError(f"{said}: {_allowed(name, parts, kind)}")
+
+
+def _parts(name: str, event: Event) -> int:
+    """How many parts an event has that a parameter is one of."""
+    vehicles = [each.vehicle for each in event]
+    if name in OF_BODIES and all(isinstance(each, Vehicle) for each in vehicles):
+        return sum(len(each.parts) for each in vehicles if isinstance(each, Vehicle))
+    return sum(len(each.static_loads()) for each in vehicles)
+
+
+def _allowed(name: str, parts: int, kind: str) -> str:
+    """How many numbers a parameter takes that `kind` has so many parts of."""
+    if parts == 1:
+        return f"must be one for each sample, for {kind} has one {_part(name)}"
+    return f"must be one for each sample, or one for each of the {parts} {_plural(name)} of {kind}"
+
+
+def _part(name: str) -> str:
+    return "body" if name in OF_BODIES else "axle"
+
+
+def _plural(name: str) -> str:
+    return "bodies" if name in OF_BODIES else "axles"
 
 
 def _table(key: str, table: object) -> Mapping[str, object]:
@@ -88,11 +195,12 @@ def _table(key: str, table: object) -> Mapping[str, object]:
         return {}
     if not isinstance(table, Mapping):
         raise ValueError(f"{key} = {shown(table)}: must be a mapping from name to numbers")
+    allowed = [name for name in ATTRIBUTES if key == "factors" or name not in OF_BRIDGES]
     for name in table:
         if name not in ATTRIBUTES:
-            near = suggestion(name, ATTRIBUTES) if isinstance(name, str) else ""
+            near = suggestion(name, allowed) if isinstance(name, str) else ""
             raise ValueError(
-                f"{key}: unknown parameter {name!r}{near}; allowed: {', '.join(ATTRIBUTES)}"
+                f"{key}: unknown parameter {name!r}{near}; allowed: {', '.join(allowed)}"
             )
     return table
 
@@ -100,6 +208,13 @@ def _table(key: str, table: object) -> Mapping[str, object]:
 def _columns(key: str, name: str, given: object, samples: int) -> Array:
     """Shape (1, 1) for a number, else one row for each sample."""
     values = array(f"{key}[{name!r}]", given)
+    if key == "values" and name != "initial_friction":
+        if (wrong := values < 0.0).any():
+            said = first_of(f"values[{name!r}]", values, wrong)
+            raise ValueError(f"{said}: must not be negative")
+        if name in ABOVE_ZERO and (wrong := values == 0.0).any():
+            said = first_of(f"values[{name!r}]", values, wrong)
+            raise ValueError(f"{said}: must be greater than 0")
     if values.ndim == 0:
         return values.reshape(1, 1)
     if values.ndim > 2 or (values.ndim == 2 and values.shape[1] == 0) or len(values) != samples:
@@ -118,8 +233,9 @@ def _relative(
     events: Sequence[Event],
     kinds: NDArray[np.uint32],
     samples: int,
+    limits: Array | float = 1.0,
 ) -> Array:
-    """What multiplies the nominal values to give these."""
+    """What multiplies the nominal values to give these; `limits` are factors on those besides."""
     if ATTRIBUTES[name] is None:
         raise ValueError(f"values[{name!r}]: a bridge has no single value of it; give factors")
     nominal = [np.concatenate([_nominal(name, each.vehicle) for each in event]) for event in events]
@@ -132,30 +248,42 @@ def _relative(
     (width,) = widths
     if values.shape[1] not in (1, width):
         raise ValueError(
-            f"values[{name!r}] = {values.shape[1]} values a sample: must be one, or one for each "
-            f"of its {width} parts"
+            f"values[{name!r}] = {values.shape[1]} values a sample: "
+            f"{_allowed(name, width, 'the event')}"
         )
     if width == 1 and name in OF_SUSPENSIONS and _has_springs(events):
         raise ValueError(
             f"values[{name!r}]: with a single axle these would vary the springs between bodies "
             "too; give factors"
         )
-    lowest = -np.inf if name == "initial_friction" else 0.0
-    if (values < lowest).any():
-        wrong = values[values < lowest][0]
-        raise ValueError(f"values[{name!r}] = {wrong:g}: must not be negative")
     for number, each in enumerate(nominal):
-        if (each == 0.0).any() or not np.isfinite(each).all():
-            what = "friction limit" if name == "initial_friction" else name
+        wrong = np.flatnonzero((each == 0.0) | ~np.isfinite(each))
+        if len(wrong) > 0:
+            what = ATTRIBUTES[name]
             kind = f" of kind {number}" if len(nominal) > 1 else ""
+            lacks = f"no {what}" if each[wrong[0]] == 0.0 else f"an infinite {what}"
             raise ValueError(
-                f"values[{name!r}]: the {what} of part {int(np.argmin(np.abs(each)))}{kind} is "
-                f"{each.min():g}, of which nothing is a multiple; give the vehicle another one"
+                f"values[{name!r}]: {_part(name)} {wrong[0] + 1}{kind} has {lacks}, so that "
+                f"{'it' if what == name else name} cannot be set by values"
             )
     if len(nominal) == 1:
         relative: Array = values / nominal[0]
     else:
         relative = np.broadcast_to(values, (samples, values.shape[1])) / np.array(nominal)[kinds]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = relative / limits
+    beyond = ~(np.abs(relative) <= 1.0)
+    if name == "initial_friction" and beyond.any():
+        row, part = np.argwhere(beyond)[0]
+        one = values.shape[1] == 1
+        place = (row if len(values) > 1 else 0, 0 if one else part)
+        index = "" if values.shape == (1, 1) else f"[{row}]" if one else f"[{row}, {part}]"
+        limit = nominal[int(kinds[row]) if len(nominal) > 1 else 0][part]
+        limit *= np.broadcast_to(limits, relative.shape)[row, part]
+        raise ValueError(
+            f"values[{name!r}]{index} = {values[place]:g}: must be within the friction limit of "
+            f"axle {part + 1}, {limit:g} N"
+        )
     # One number for all parts keeps its place only if there is one part.
     if len(relative) == 1 and width > 1 and samples != 1:
         return np.broadcast_to(relative, (samples, width)).copy()

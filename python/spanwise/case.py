@@ -219,6 +219,9 @@ class Case:
             If the numerics of the bridge fail.
         """
         given = {"road": self.road, **self.crossing, **overrides}
+        # As for a single crossing, the file's speed may be there for nobody.
+        if "speed" not in overrides and all(each.speed is not None for each in self.passages):
+            given.pop("speed", None)
         with self._errors(overridden=True):
             return ensemble(self.bridge, [*self.passages], samples=samples, **given)
 

@@ -176,7 +176,7 @@ def cross(
 def surface_of(road: object) -> Road:
     """The road given, or a smooth one."""
     if road is not None and not isinstance(road, Road):
-        raise TypeError(f"road = {road!r}: must be a Road")
+        raise TypeError(f'road = {shown(road)}: must be a Road, such as sw.ISO8608("C")')
     return Smooth() if road is None else road
 
 

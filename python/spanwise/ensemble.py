@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, TypeAlias, get_args
 
@@ -18,13 +19,15 @@ from spanwise._events import (
     is_simple,
     kind_column,
     own_road,
+    refuse_unused,
     speeds_by_kind,
     speeds_of,
+    speeds_told,
 )
 from spanwise._keys import suggestion
 from spanwise._progress import Bar
 from spanwise._recipe import Recipe
-from spanwise._variation import factors_of
+from spanwise._variation import factors_of, idle, refuse_overdamped
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
@@ -97,7 +100,8 @@ def ensemble(
         samples 0 to 999 ended.
     speed : float or array_like, optional
         Speed at the start [m/s]: one for all, one for each sample, shape (samples,), or one for
-        each vehicle of it, shape (samples, vehicles). Needed as for `cross`.
+        each vehicle of it, shape (samples, vehicles). Needed as for `cross`, and not allowed where
+        every passage has its own.
     road : Road, optional
         The road; smooth by default. An `ISO8608` road, alone or in a sum, is drawn anew for each
         sample from `seed` and the number of the sample, in place of its own seed and sample; the
@@ -153,6 +157,11 @@ def ensemble(
     RuntimeError
         If the numerics of the bridge fail. Samples that fail are among `Ensemble.failures`.
 
+    Warns
+    -----
+    UserWarning
+        If what a factor multiplies is 0 in all vehicles, or is the damping of a bridge without.
+
     Notes
     -----
     Vehicles that cross alone, at constant speed and from the left, take equal steps in space, so
@@ -176,6 +185,7 @@ def ensemble(
     kinds = kind_column(kind, events, samples)
     speeds = speeds_of(speed, events, samples)
     check_speed(events, None if speed is None else float(speeds.column[:1].sum()), driven)
+    refuse_unused(speeds, events, driven)
     shared, own = own_road(surface, events, own_roads)
     varied = factors_of(factors, values, events, kinds, samples)
     conditions = Conditions.of(
@@ -195,6 +205,9 @@ def ensemble(
         lift_off=lift_off,
         mask=mask,
     )
+    refuse_overdamped(varied, conditions.core["damping"], first)
+    for remark in idle(varied, events, conditions.core):
+        warnings.warn(remark, UserWarning, stacklevel=2)
     advance = None if advance is None else number("advance", advance)
     looked_at = _quantities(bridge, quantities)
     simple = all(is_simple(event, driven) for event in events)
@@ -217,7 +230,6 @@ def ensemble(
             speeds=column.column,
             factors=[each.core for each in varied],
             threads=None if threads is None else count("threads", threads),
-            chunk=None,
             progress=listener,
             **conditions.core,
         )
@@ -225,11 +237,12 @@ def ensemble(
         # The line ends also where the computation does not.
         if isinstance(listener, Bar):
             listener.close()
+    told = speeds_told(speeds, events, kinds, samples, driven)
     settings: dict[str, Any] = {
         "samples": samples,
         "seed": seed,
         "first": first,
-        "speed": speeds.given,
+        "speed": told.given,
         "road": surface,
         "own_roads": own_roads,
         "kind": kinds if len(events) > 1 else None,
@@ -250,7 +263,7 @@ def ensemble(
         first=first,
         seed=seed,
         drive=driven,
-        speeds=speeds,
+        speeds=told,
         road=shared,
         own=own,
         factors=varied,

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import count, shown
+from spanwise._checks import is_list, shown, whole
 from spanwise._conditions import masked
 from spanwise._keys import suggestion
 from spanwise._recipe import Recipe
@@ -55,6 +56,8 @@ class Failure:
     ----------
     sample : int
         Its number: `Ensemble.first` plus its row.
+    row : int
+        Its row, from 0.
     step : int or None
         The time step in which it failed, if it came so far.
     cause : str
@@ -64,6 +67,7 @@ class Failure:
     sample: int
     step: int | None
     cause: str
+    row: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +98,7 @@ class Ensemble:
     first, seed : int
         Number of the first sample, and the seed: with its number they make a sample what it is.
     speed : float or ndarray or None
-        Speeds as given [m/s].
+        Speeds as given, or as passages have their own [m/s].
     settings : dict
         Keyword arguments of `ensemble` that compute it again, defaults filled in.
     sections : ndarray, shape (section,)
@@ -102,7 +106,8 @@ class Ensemble:
     supports : ndarray, shape (support,)
         Positions of the supports [m].
     frequencies : ndarray, shape (mode,)
-        Natural frequencies of the included modes [Hz].
+        Natural frequencies of the included modes of the bridge as given [Hz]: no factor on its
+        stiffness is in them.
     quantities : tuple of str
         What was looked at.
     failures : tuple of Failure
@@ -135,7 +140,7 @@ class Ensemble:
         self.frequencies: Array = frozen(core.omega / (2.0 * np.pi))
         self.supports: Array = frozen(np.array([x for x, _ in bridge.supports]))
         self.failures = tuple(
-            Failure(self.first + sample, step, cause) for sample, step, cause in core.failures
+            Failure(self.first + row, step, cause, row) for row, step, cause in core.failures
         )
         self._numbers: Array = frozen(core.numbers)
         self._instants: NDArray[np.uint32] = core.instants
@@ -170,10 +175,7 @@ class Ensemble:
     def _extremes(self, name: str) -> SampleExtremes:
         """Of one kind of response."""
         if name not in self._starts:
-            have = ", ".join(self.quantities)
-            raise AttributeError(
-                f"{name}: was not looked at; this ensemble has {have} (give quantities)"
-            )
+            raise AttributeError(f"{name}: {self._not_looked_at}")
         start, width = self._starts[name]
         all_ = self._starts[""][0]
         x = {"reactions": self.supports, "clamp_moments": self.bridge.clamps}
@@ -192,6 +194,11 @@ class Ensemble:
             frozen(statics[..., smallest]),
             lambda of_largest: self._moments(start if of_largest else all_ + start, width),
         )
+
+    @property
+    def _not_looked_at(self) -> str:
+        have = ", ".join(self.quantities)
+        return f"was not looked at; this ensemble has {have} (give quantities)"
 
     def _moments(self, start: int, width: int) -> Moments:
         """Times and positions of some of the extremes, counted through responses and loads."""
@@ -213,42 +220,68 @@ class Ensemble:
 
     @cached_property
     def deflection(self) -> SampleExtremes:
-        """Deflections down [m]."""
+        """Deflections down [m].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, sections).
+        """
         return self._extremes("deflection")
 
     @cached_property
     def moment(self) -> SampleExtremes:
-        """Bending moments, sagging positive [N m]."""
+        """Bending moments, sagging positive [N m].
+
+        A `SampleExtremes`: ``.max`` and ``.min`` with their ``_time`` [s] and ``_position`` [m]
+        (``.max_time``, ``.max_position``, ...), all of shape (samples, sections), and
+        ``.static_max``, ``.static_min``, of shape (sections,) where all samples share them.
+        """
         return self._extremes("moment")
 
     @cached_property
     def shear_left(self) -> SampleExtremes:
-        """Shear just left of the sections [N]."""
+        """Shear just left of the sections [N].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, sections).
+        """
         return self._extremes("shear_left")
 
     @cached_property
     def shear_right(self) -> SampleExtremes:
-        """Shear just right of the sections [N]."""
+        """Shear just right of the sections [N].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, sections).
+        """
         return self._extremes("shear_right")
 
     @cached_property
     def shear(self) -> SampleExtremes:
-        """Shear on both sides of the sections together [N]."""
+        """Shear on both sides of the sections together [N].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, sections).
+        """
         return self.shear_left.merged(self.shear_right)
 
     @cached_property
     def reactions(self) -> SampleExtremes:
-        """Support reactions, up [N]."""
+        """Support reactions, up [N].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, supports).
+        """
         return self._extremes("reactions")
 
     @cached_property
     def clamp_moments(self) -> SampleExtremes:
-        """Moments of the supports of `Bridge.clamps` [N m]."""
+        """Moments of the supports of `Bridge.clamps` [N m].
+
+        A `SampleExtremes` as `moment` is, of shape (samples, clamps).
+        """
         return self._extremes("clamp_moments")
 
     @cached_property
     def axle_loads(self) -> SampleExtremes:
-        """Axle loads [N], over the whole crossing, of all vehicles in their order."""
+        """Axle loads [N], over the whole crossing, of all vehicles in their order.
+
+        A `SampleExtremes` as `moment` is, of shape (samples, axles). The approach counts too.
+        """
         start, end = self._core.columns("axle_loads")
         axles = (end - start) // 2
         return SampleExtremes(
@@ -264,7 +297,7 @@ class Ensemble:
     def static_axle_loads(self) -> Array:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
         loads = self._core.static_loads()
-        varied = len(self._recipe.kinds) > 0 or any(
+        varied = len(self._recipe.events) > 1 or any(
             each.name in SHARED_OUT for each in self._recipe.factors
         )
         return frozen(loads if varied else loads[0])
@@ -326,10 +359,10 @@ class Ensemble:
             )
         name, sense = FACTORS[quantity]
         least = self._recipe.conditions.mask if mask is None else masked(mask)
-        try:
-            extremes: SampleExtremes = getattr(self, name)
-        except AttributeError as error:
-            raise ValueError(f'quantity = "{quantity}": {error}') from None
+        if name not in (*self.quantities, "axle_loads"):
+            what = "" if name == quantity else f"{name} "
+            raise ValueError(f'quantity = "{quantity}": {what}{self._not_looked_at}')
+        extremes: SampleExtremes = getattr(self, name)
         return extremes.factors(sense, least)
 
     def run(self, sample: int) -> Run:
@@ -355,12 +388,26 @@ class Ensemble:
         RuntimeError
             If the sample is one that failed.
         """
-        row = count("sample", sample)
-        if row >= self.samples:
-            raise IndexError(f"sample = {row}: must be from 0 to below {self.samples}")
+        row = self._row("sample", sample)
+        for each in self.failures:
+            if each.row == row:
+                step = "" if each.step is None else f" in step {each.step}"
+                raise RuntimeError(
+                    f"row {row}: sample number {each.sample} failed{step}: {each.cause}"
+                )
         return self._recipe.run(row, self._core)
 
-    def histories(self, quantity: History, samples: Sequence[int]) -> Array:
+    def _row(self, key: str, given: object) -> int:
+        """A row that there is."""
+        row = whole(key, given)
+        if 0 <= row < self.samples:
+            return row
+        of_number = row - self.first
+        there = 0 <= of_number < self.samples
+        hint = f" (sample number {row} is row {of_number})" if there else ""
+        raise IndexError(f"row {row}: must be from 0 to below {self.samples}{hint}")
+
+    def histories(self, quantity: History, samples: int | Sequence[int]) -> Array:
         """Histories of a response, by a crossing of its own for each of some samples.
 
         Parameters
@@ -368,8 +415,8 @@ class Ensemble:
         quantity : str
             ``"deflection"``, ``"moment"``, ``"shear_left"``, ``"shear_right"``, ``"reactions"``,
             ``"clamp_moments"`` or ``"axle_loads"``.
-        samples : sequence of int
-            Their rows, from 0.
+        samples : int or sequence of int
+            Their rows, from 0, or the row of one.
 
         Returns
         -------
@@ -378,14 +425,23 @@ class Ensemble:
 
         Raises
         ------
+        IndexError
+            If there is no such sample.
         ValueError
             If they differ in their number of instants, or would take too much memory.
+        RuntimeError
+            If one of them is one that failed.
         """
         if quantity not in get_args(History):
             raise ValueError(
                 f"quantity = {shown(quantity)}: must be one of {', '.join(get_args(History))}"
             )
-        rows = [count(f"samples[{i}]", each) for i, each in enumerate(samples)]
+        if is_list(samples):
+            rows = [self._row(f"samples[{i}]", each) for i, each in enumerate(samples)]
+        elif isinstance(samples, Integral):
+            rows = [self._row("samples", samples)]
+        else:
+            raise ValueError(f"samples = {shown(samples)}: must be a row or a list of rows")
         found: Array | None = None
         for i, row in enumerate(rows):
             values: Array = getattr(self.run(row), quantity)
@@ -406,7 +462,12 @@ class Ensemble:
         return np.empty((0, 0, 0)) if found is None else found
 
     def summary(self) -> str:
-        """What crossed what, percentiles of extremes and impact factors, and failures, as text."""
+        """What crossed what, percentiles of extremes and impact factors, and failures, as text.
+
+        Impact factors are those of one section, where the static value is largest; of sections
+        alike in that, as on a symmetric bridge, the one with the larger dynamic value (medians).
+        Then of each sample the largest dynamic value anywhere by the largest static one anywhere.
+        """
         from spanwise._ensemblesummary import summary
 
         return summary(self)
@@ -417,8 +478,9 @@ class Ensemble:
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
         return (
-            f"Ensemble({self.samples} samples from {self.first} of seed {self.seed}{failed}, "
-            f"{len(self.sections)} sections, {', '.join(self.quantities)}; hash {self.hash})"
+            f"Ensemble({_many(self.samples, 'sample')} from {self.first} of seed "
+            f"{self.seed}{failed}, {_many(len(self.sections), 'section')}, "
+            f"{', '.join(self.quantities)}; hash {self.hash})"
         )
 
     def to_npz(self, path: str | Path) -> None:
@@ -442,6 +504,10 @@ class Ensemble:
         from spanwise.plotting import EnsemblePlot
 
         return EnsemblePlot(self)
+
+
+def _many(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _cores(quantities: Sequence[str]) -> list[str]:

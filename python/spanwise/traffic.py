@@ -209,7 +209,7 @@ class Passage:
         if not isinstance(self.vehicle, Wheels):
             raise TypeError(f"vehicle = {shown(self.vehicle)}: must be a Vehicle or a train")
         if self.road is not None and not isinstance(self.road, Road):
-            raise TypeError(f"road = {shown(self.road)}: must be a Road")
+            raise TypeError(f'road = {shown(self.road)}: must be a Road, such as sw.ISO8608("C")')
         if self.speed is not None:
             object.__setattr__(self, "speed", positive("speed", self.speed))
         if self.drive is not None:

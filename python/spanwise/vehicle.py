@@ -272,7 +272,9 @@ class Vehicle(Wheels):
                 )
 
     def __repr__(self) -> str:
-        bodies = f"{len(self.bodies)} bodies, " if self.bodies else ""
+        bodies = ""
+        if self.bodies:
+            bodies = f"{len(self.bodies)} bod{'ies' if len(self.bodies) > 1 else 'y'}, "
         axles = f"{len(self.axles)} axle{'s' if len(self.axles) > 1 else ''}"
         return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{axles}, {self.wheelbase:.4g} m)"
 

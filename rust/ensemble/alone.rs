@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
+use super::together::deviation as standard_deviation;
 use crate::analysis::Analysis;
 use crate::course::Passage;
 use crate::crossing::{ModalBridge, cross_all};
@@ -132,7 +133,8 @@ pub fn cross(
     if !layout.is_finite(record.numbers, history.axles, bodies) {
         // No step shows it, but sums of squares do.
         let last = history.len() - 1;
-        return Err(Error::NotFinite { time: history.time[last], position: history.positions[last * history.axles] });
+        let (time, position) = (history.time[last], history.positions[last * history.axles]);
+        return Err(Error::NotFinite { step: last, time, position });
     }
     Ok(())
 }
@@ -157,7 +159,7 @@ fn ride(
         let deviation = |i: usize| history.loads[i * axles + k] - history.static_loads[k];
         let mean = there.iter().map(|&i| deviation(i)).sum::<f64>() / count;
         let squares = there.iter().map(|&i| deviation(i).powi(2)).sum::<f64>() / count;
-        (squares - mean * mean).max(0.0).sqrt() / history.static_loads[k]
+        standard_deviation(mean, squares) / history.static_loads[k]
     };
     put(Column::LoadCoefficients, 0, &mut (0..axles).map(coefficient));
     let lifts = history.lift_offs();

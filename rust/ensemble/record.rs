@@ -93,6 +93,11 @@ impl Layout {
         self.range(Column::Positions).end
     }
 
+    /// Bytes of a sample, with its march, digest and what it takes to sort it in.
+    pub fn bytes(&self) -> f64 {
+        (8 * self.width() + 4 * self.instants() + 40) as f64
+    }
+
     /// Instants of a sample: of the extremes of responses and loads in the order of the numbers, then how often each axle
     /// left the road.
     pub fn instants(&self) -> usize {

@@ -25,7 +25,7 @@ pub fn middle(count: usize) -> usize {
     count / 2
 }
 
-/// Most influence numbers kept ready; beyond that they are worked out again for each block of samples.
+/// Most influence numbers kept ready; beyond that they are worked out again for each group of lanes.
 const READY: usize = 1 << 23;
 
 /// Influence of the axle loads over a chunk of steps.

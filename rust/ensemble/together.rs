@@ -3,11 +3,10 @@
 use std::sync::OnceLock;
 
 use super::alone::{Scaled, passages};
-use super::block::{
-    Bridge, Couplings, Drawing, Ends, Group, Scratch, Seen, Shared, Steppers, Trouble, Way, march, rest,
-};
+use super::block::{Bridge, Drawing, Ends, Group, Scratch, Seen, Steppers, Trouble, Way, march, rest};
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
+use super::shared::{Couplings, Shared};
 use super::simd::{InLanes, Lanes};
 use super::table::Table;
 use super::watch::Watched;
@@ -62,6 +61,13 @@ fn extremes<L: Lane>(table: &Table, h: f64, seen: &Seen<L>, row: usize, lane: us
         if better || earlier { (at_stop + 0.0, instant_of_stop(stop as usize)) } else { (at_step + 0.0, step as u32) }
     };
     [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
+}
+
+/// Standard deviation from the means of deviations from some value and of their squares.
+pub fn deviation(mean: f64, squares: f64) -> f64 {
+    let variance = squares - mean * mean;
+    // By rounding only; what is not a number stays so.
+    if variance < 0.0 { 0.0 } else { variance.sqrt() }
 }
 
 /// What samples that march together share.
@@ -131,8 +137,8 @@ impl Task<'_> {
         let time = step as f64 * self.step(sample);
         let position = self.table.path.x(step.saturating_sub(1), 0);
         match unsettled {
-            Some(unsettled) => Error::NoConvergence { what: unsettled.name(), time, position },
-            None => Error::NotFinite { time, position },
+            Some(unsettled) => Error::NoConvergence { what: unsettled.name(), step, time, position },
+            None => Error::NotFinite { step, time, position },
         }
     }
 
@@ -365,8 +371,7 @@ impl Task<'_> {
                 record.instants[2 * responses + side * layout.axles + k] = at.get(lane) as u32;
             }
             let [sum, squares] = ride.sums[k].map(|s| s.get(lane) / count);
-            let deviation = (squares - sum * sum).max(0.0).sqrt();
-            record.numbers[column(Column::LoadCoefficients) + k] = deviation / static_load;
+            record.numbers[column(Column::LoadCoefficients) + k] = deviation(sum, squares) / static_load;
             record.numbers[column(Column::Aloft) + k] = ride.aloft[k].get(lane) * h;
             record.instants[2 * (responses + layout.axles) + k] = ride.lift_offs[k].get(lane) as u32;
         }

@@ -1,8 +1,9 @@
 //! Eight samples side by side in the vector registers of x86-64 processors: two of AVX2, or one of AVX-512.
 //!
-//! These numbers are for work done under [`Lanes::dispatch`] on a processor that has the instructions: only there the
-//! compiler keeps them in registers, and only there they may be used.
+//! They may be used only on a processor that has the instructions, which [`with`] sees to; and the compiler keeps them in
+//! registers only in work done under [`Lanes::dispatch`].
 //!
+//! [`with`]: crate::ensemble::simd::with
 //! [`Lanes::dispatch`]: crate::ensemble::simd::Lanes::dispatch
 
 // Only here: the processor's instructions are out of the reach of safe code, unless it is compiled for them. They take

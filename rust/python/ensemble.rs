@@ -216,7 +216,7 @@ impl Ensemble {
 #[pyfunction]
 #[pyo3(signature = (bridge, kinds, *, drive, road, own_road, modes, damping, damping_matrix, beta, step, advance, approach,
                     ramp, tail, gravity, lift_off, sections, recovery, quantities, first, count, kind_of, speeds, factors,
-                    threads, chunk, progress))]
+                    threads, progress))]
 #[allow(clippy::too_many_arguments)] // one per argument that Python names
 pub fn ensemble<'py>(
     py: Python<'py>,
@@ -245,10 +245,9 @@ pub fn ensemble<'py>(
     speeds: PyReadonlyArray1<'py, f64>,
     factors: Vec<PyFactors<'py>>,
     threads: Option<usize>,
-    chunk: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ensemble> {
-    let workers = Workers::new(threads, chunk)?;
+    let workers = Workers::new(threads)?;
     let asked =
         Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
     let all = kinds.into_iter().map(|passages| passages.into_iter().map(passage).collect());

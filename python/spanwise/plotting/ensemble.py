@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._ensemblesummary import differ
 from spanwise.plotting.envelope import branches
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
 from spanwise.plotting.style import (
@@ -30,12 +32,19 @@ from spanwise.population import Factor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Transform
 
     from spanwise.columns import SampleExtremes
     from spanwise.population import Ensemble, Quantity
 
 #: The band that is drawn.
 BAND: Final = (5.0, 95.0)
+
+#: Where an axis of impact factors ends at most, in the largest where the response governs.
+CAP: Final = 2.0
+
+#: How far the markers of dynamic and static values stand from their support [pt].
+ASIDE: Final = 3.0
 
 Rows: TypeAlias = NDArray[np.float64]
 
@@ -64,19 +73,31 @@ class EnsemblePlot:
         Raises
         ------
         ValueError
-            If there are no such factors, or no samples.
+            If there are no such factors, no samples, or no static value to divide by.
         """
         ensemble = self._ensemble
-        low, median, high, largest = _bands(ensemble.impact_factors(quantity))
+        values = ensemble.impact_factors(quantity)
+        if len(ensemble.failures) < ensemble.samples and np.isnan(values).all():
+            raise ValueError(
+                f"masked everywhere: no static value of {quantity!r} is large enough to divide by"
+            )
+        low, median, high, largest = _bands(values)
         ax = axes_for(ax)
-        if quantity in FACTORS:
+        several = quantity in FACTORS and len(ensemble.sections) > 1
+        if several:
             x = ensemble.sections
-            _band(ax, x, low, high)
+            _band(ax, x, low, high, _name(ensemble))
             plot_masked(ax, x, median, label="median", **DYNAMIC)
             plot_masked(ax, x, largest, label="largest", color=GREY, linewidth=0.8)
             along(ax, ensemble.bridge)
-            ax.set_xlabel(f"{ax.get_xlabel()}\n{mask_note(ensemble._recipe.conditions.mask)}")
-            ax.set_ylim(0.0, self._top(quantity, largest))
+            notes = [mask_note(ensemble._recipe.conditions.mask)]
+            notes += self._frame(ax, quantity, low, largest)
+            ax.set_xlabel("\n".join([ax.get_xlabel(), *notes]))
+        elif quantity in FACTORS:
+            x = ensemble.sections
+            _whiskers(ax, x, low, median, high, f"median, {_name(ensemble)}")
+            ax.plot(x, largest, "_", color=GREY, markersize=10.0, label="largest")
+            along(ax, ensemble.bridge, hinges=False)
         else:
             _bars(ax, ensemble, quantity, low, median, high)
         zero_line(ax, 1.0)
@@ -85,15 +106,26 @@ class EnsemblePlot:
         legend_above(ax, clear=1.6 if quantity in FACTORS else 0.5)
         return whole(ax)
 
-    def _top(self, quantity: Factor, largest: Rows) -> float:
-        """Where the axis ends: what grows beyond that is large only for lack of a static value."""
+    def _frame(self, ax: Axes, quantity: Factor, low: Rows, largest: Rows) -> list[str]:
+        """Ends of the axis, and a note if a curve runs out of it.
+
+        What grows far beyond the factors where the response governs is large only for lack of a
+        static value.
+        """
         name, sense = FACTORS_OF[quantity]
         extremes = getattr(self._ensemble, name)
         up, down = extremes.static_max, -extremes.static_min
         static = {"positive": up, "negative": down, "either": np.fmax(up, down)}[sense]
         static = np.nanmean(np.atleast_2d(static), axis=0)
         governing = largest[static >= 0.5 * np.nanmax(static)]
-        return 1.15 * float(np.nanmax(governing if np.isfinite(governing).any() else largest))
+        most = float(np.nanmax(largest))
+        cap = most
+        if np.isfinite(governing).any():
+            cap = min(most, CAP * max(1.0, float(np.nanmax(governing))))
+        least = min(1.0, float(np.nanmin(low)))
+        margin = 0.06 * (max(cap, 1.0) - least) or 0.06
+        ax.set_ylim(least - margin, max(cap, 1.0) + margin * (cap == most))
+        return [] if cap == most else [f"(cut at {cap:.3g}; the largest is {most:.3g})"]
 
     @styled
     def envelope(self, quantity: Quantity = "moment", ax: Axes | None = None) -> Figure:
@@ -124,9 +156,11 @@ class EnsemblePlot:
         extremes = getattr(ensemble, quantity)
         ax = axes_for(ax)
         by_section = quantity in ("deflection", "moment", "shear")
+        several = by_section and len(extremes.x) > 1
+        beside = "static, median" if _statics_differ(extremes) else "static"
         for side, first in (("max", True), ("min", False)):
             x, curves = extremes.x, _curves(extremes, side)
-            if quantity == "shear":
+            if quantity == "shear" and several:
                 both = [_curves(each, side) for each in (ensemble.shear_left, ensemble.shear_right)]
                 cut = [
                     branches(extremes.x, curve, np.stack(sides, axis=-1), ensemble.supports)
@@ -134,12 +168,14 @@ class EnsemblePlot:
                 ]
                 x, curves = cut[0][0], [curve for _, curve in cut]
             low, median, high, static = (measure.factor * each for each in curves)
-            if by_section:
-                _band(ax, x, low, high, labelled=first)
+            if several:
+                _band(ax, x, low, high, _name(ensemble) if first else None)
                 ax.plot(x, median, label="median" if first else None, **DYNAMIC)
-                ax.plot(x, static, label="static" if first else None, **STATIC)
+                ax.plot(x, static, label=beside if first else None, **STATIC)
             else:
-                _points(ax, low, median, high, static, labelled=first)
+                at = x if by_section else np.arange(len(median), dtype=np.float64)
+                names = (f"median, {_name(ensemble)}", beside) if first else (None, None)
+                _points(ax, at, (low, median, high), static, names)
         if by_section:
             along(ax, ensemble.bridge)
         else:
@@ -168,17 +204,41 @@ def _bands(values: Rows) -> tuple[Rows, Rows, Rows, Rows]:
     return low, median, high, largest
 
 
-def _band(ax: Axes, x: Rows, low: Rows, high: Rows, *, labelled: bool = True) -> None:
-    name = f"{BAND[0]:g} to {BAND[1]:g} % of the samples"
-    ax.fill_between(x, low, high, color=PALE, linewidth=0.0, label=name if labelled else None)
+def _statics_differ(extremes: SampleExtremes) -> bool:
+    return differ(extremes.static_max) or differ(extremes.static_min)
 
 
-def _points(ax: Axes, low: Rows, median: Rows, high: Rows, static: Rows, *, labelled: bool) -> None:
-    """A point with its band for each support, the static value beside it."""
-    places = np.arange(len(median), dtype=np.float64)
-    name = f"median, {BAND[0]:g} to {BAND[1]:g} % of the samples"
+def _name(ensemble: Ensemble) -> str:
+    """What the band is, of how many samples."""
+    failed = len(ensemble.failures)
+    sound = ensemble.samples - failed
+    return (
+        f"{BAND[0]:g} to {BAND[1]:g} % of {sound} sample{'' if sound == 1 else 's'}"
+        f"{f' ({failed} failed)' if failed else ''}"
+    )
+
+
+def _band(ax: Axes, x: Rows, low: Rows, high: Rows, name: str | None) -> None:
+    ax.fill_between(x, low, high, color=PALE, linewidth=0.0, label=name)
+    # Between two gaps a band has no width; a line stands for it.
+    here = np.isfinite(np.concatenate([[np.nan], low, [np.nan]]))
+    alone = here[1:-1] & ~here[:-2] & ~here[2:]
+    if alone.any():
+        ax.vlines(x[alone], low[alone], high[alone], color=PALE, linewidth=4.0)
+
+
+def _whiskers(
+    ax: Axes,
+    at: Rows,
+    low: Rows,
+    median: Rows,
+    high: Rows,
+    name: str | None,
+    aside: float = 0.0,
+) -> None:
+    """A point with its band at each place, so many points [pt] aside of it."""
     ax.errorbar(
-        places - 0.1,
+        at,
         median,
         yerr=[median - low, high - median],
         fmt="o",
@@ -186,35 +246,51 @@ def _points(ax: Axes, low: Rows, median: Rows, high: Rows, static: Rows, *, labe
         capsize=3.0,
         color=DYNAMIC["color"],
         linewidth=1.0,
-        label=name if labelled else None,
+        label=name,
+        clip_on=False,
+        transform=_aside(ax, aside),
     )
+    _hold(ax, at, low, high)
+
+
+def _aside(ax: Axes, points: float) -> Transform:
+    """Data coordinates, so many points to the right."""
+    from matplotlib.transforms import ScaledTranslation
+
+    return ax.transData + ScaledTranslation(points / 72.0, 0.0, ax.figure.dpi_scale_trans)
+
+
+def _hold(ax: Axes, at: Rows, *values: Rows) -> None:
+    """Let the axes hold what was drawn aside, which matplotlib does not count among their data."""
+    ax.update_datalim([(x, y) for each in values for x, y in zip(at, each, strict=True)])
+    ax.autoscale_view()
+
+
+def _points(
+    ax: Axes, at: Rows, bands: tuple[Rows, Rows, Rows], static: Rows, names: Sequence[str | None]
+) -> None:
+    """A point with its band at each place, the static value beside it."""
+    _whiskers(ax, at, *bands, names[0], -ASIDE)
     ax.plot(
-        places + 0.1,
+        at,
         static,
         linestyle="none",
         marker="D",
         markersize=4.5,
         markerfacecolor="white",
         markeredgecolor=STATIC["color"],
-        label="static" if labelled else None,
+        label=names[1],
+        clip_on=False,
+        transform=_aside(ax, ASIDE),
     )
+    _hold(ax, at, static)
 
 
 def _bars(
     ax: Axes, ensemble: Ensemble, quantity: Factor, low: Rows, median: Rows, high: Rows
 ) -> None:
     places = np.arange(len(median), dtype=np.float64)
-    ax.errorbar(
-        places,
-        median,
-        yerr=[median - low, high - median],
-        fmt="o",
-        markersize=4.0,
-        capsize=3.0,
-        color=DYNAMIC["color"],
-        linewidth=1.0,
-        label=f"median, {BAND[0]:g} to {BAND[1]:g} % of the samples",
-    )
+    _whiskers(ax, places, low, median, high, f"median, {_name(ensemble)}")
     if quantity == "reactions":
         _name_supports(ax, ensemble, quantity)
         return

@@ -1,0 +1,156 @@
+//! Where the axles of samples that share the geometry are, and what lies under them: the table, with the roads and speeds
+//! of a group of lanes.
+
+use super::table::{Below, Table};
+use crate::lane::Lane;
+use crate::newmark::Coordinate;
+use crate::road::spline::weighted;
+use crate::step::{Geometry, Stepper, Surface};
+
+/// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
+const COUPLED: usize = 1 << 21;
+
+/// What the steps of samples that are alike need to know about the places of the axles on the bridge: by rows of a table,
+/// from the first with an axle on it.
+#[derive(Debug, Clone, Default)]
+pub struct Couplings {
+    width: usize,
+    numbers: Vec<f64>,
+}
+
+impl Couplings {
+    /// Of samples with this speed [m/s], as their step works it out; none if that is too much.
+    pub fn new(table: &Table, stepper: &mut Stepper<f64>, speed: f64) -> Self {
+        let road = [0.0];
+        let mut geometry = Shared::new(table, &road, speed, None);
+        let mut couplings = Couplings::default();
+        for row in table.first..=table.last() {
+            geometry.row = row;
+            geometry.step = row;
+            let coupling = stepper.coupling(&geometry);
+            couplings.width = coupling.len();
+            if couplings.width * (table.last() + 1 - table.first) > COUPLED {
+                return Couplings::default();
+            }
+            couplings.numbers.extend_from_slice(coupling);
+        }
+        couplings
+    }
+}
+
+/// The shared table, with the roads and speeds of a group of samples.
+#[derive(Debug, Clone)]
+pub struct Shared<'a, L> {
+    table: &'a Table,
+    /// Coefficients of the samples' own roads.
+    road: &'a [L],
+    /// Their speeds [m/s].
+    pub speed: L,
+    /// Where all lanes are alike, how the axles feel the bridge, by row from the first with one on it.
+    couplings: Option<&'a Couplings>,
+    /// The step, and where the table has it.
+    step: usize,
+    row: usize,
+    surfaces: Vec<Surface<L>>,
+}
+
+impl<'a, L: Lane> Shared<'a, L> {
+    /// At the start.
+    #[inline(always)]
+    pub fn new(table: &'a Table, road: &'a [L], speed: L, couplings: Option<&'a Couplings>) -> Self {
+        let zero = L::splat(0.0);
+        let level = Surface { elevation: zero, slope: zero, curvature: zero };
+        let surfaces = vec![level; table.axles()];
+        let mut shared = Shared { table, road, speed, couplings, step: 0, row: 0, surfaces };
+        shared.look_down();
+        shared
+    }
+
+    #[inline(always)]
+    fn look_down(&mut self) {
+        let axles = self.table.axles();
+        let below = &self.table.below[self.row * axles..(self.row + 1) * axles];
+        for (surface, below) in self.surfaces.iter_mut().zip(below) {
+            match below {
+                Below::Given(s) => {
+                    let (elevation, slope) = (L::splat(s.elevation), L::splat(s.slope));
+                    *surface = Surface { elevation, slope, curvature: L::splat(s.curvature) };
+                }
+                Below::Own { given, taps, share } => {
+                    let mask = self.road.len() - 1;
+                    let first = taps.first & mask;
+                    let near = match self.road.get(first..).unwrap_or_default() {
+                        [a, b, c, d, ..] => [*a, *b, *c, *d],
+                        _ => [0, 1, 2, 3].map(|k| self.road[(first + k) & mask]),
+                    };
+                    // Slope and curvature count only where the step asks for them.
+                    let mut parts = [L::splat(0.0); 3];
+                    for ((part, given), weights) in parts.iter_mut().zip(given).zip(taps.weights).take(self.table.kinds)
+                    {
+                        *part = L::splat(*given) + weighted(weights, near);
+                    }
+                    *surface = share.of(parts);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn entry(&self, contact: usize) -> usize {
+        (self.row * self.table.axles() + contact) * self.table.modes * self.table.kinds
+    }
+}
+
+impl<L: Lane> Geometry<L> for Shared<'_, L> {
+    #[inline(always)]
+    fn advance(&mut self) {
+        self.step += 1;
+        self.row = self.step.min(self.table.last());
+        self.look_down();
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, _contact: usize, _motion: Coordinate<L>, _new_step: bool) -> L::Mask {
+        L::never()
+    }
+
+    #[inline(always)]
+    fn steady(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn motion(&self, contact: usize) -> Coordinate<L> {
+        Coordinate { x: L::splat(self.table.path.x(self.step, contact)), v: self.speed, a: L::splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn shapes(&self, contact: usize, shapes: &mut [L]) {
+        let table = self.table.shapes[self.entry(contact)..].iter().step_by(self.table.kinds);
+        for (shape, &value) in shapes.iter_mut().zip(table) {
+            *shape = L::splat(value);
+        }
+    }
+
+    #[inline(always)]
+    fn slope(&self, contact: usize, mode: usize) -> L {
+        L::splat(self.table.shapes[self.entry(contact) + mode * self.table.kinds + 1])
+    }
+
+    #[inline(always)]
+    fn curvature(&self, contact: usize, mode: usize) -> L {
+        L::splat(self.table.shapes[self.entry(contact) + mode * self.table.kinds + 2])
+    }
+
+    #[inline(always)]
+    fn surface(&self, contact: usize) -> Surface<L> {
+        self.surfaces[contact]
+    }
+
+    #[inline(always)]
+    fn coupling(&self) -> Option<&[f64]> {
+        let Couplings { width, numbers } = self.couplings.filter(|couplings| couplings.width > 0)?;
+        let row = self.row.checked_sub(self.table.first)?;
+        numbers.get(row * width..(row + 1) * width)
+    }
+}
