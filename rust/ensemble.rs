@@ -110,7 +110,7 @@ impl Study {
         }
         for kind in 0..study.kinds.len() {
             study.check_axles(kind)?;
-            study.check_road(kind)?;
+            study.check_road(kind, 1.0)?;
         }
         if !shares && advance.is_some() {
             let allowed = "only for vehicles that cross alone from the left at constant speed: use step";
@@ -140,12 +140,11 @@ impl Study {
         }
     }
 
-    /// Refuses a road that repeats on the way, and contacts that cannot follow it.
-    fn check_road(&self, kind: usize) -> Result<(), Error> {
+    /// Refuses a road that repeats on the way at this speed [m/s], where none is given, and contacts that cannot follow it.
+    fn check_road(&self, kind: usize, speed: f64) -> Result<(), Error> {
         let length = self.analysis.model.shapes.mesh().length();
         for passage in &self.kinds[kind].passages {
-            // The speed, where none is given yet, plays no part.
-            let speed = passage.speed.or((!self.brings_speeds(passage)).then_some(1.0));
+            let speed = passage.speed.or((!self.brings_speeds(passage)).then_some(speed));
             let passage = Passage { speed, ..passage.clone() };
             let course = Course::new(&passage, &self.settings, "", 0)?;
             course.check_road(&self.settings, length)?;

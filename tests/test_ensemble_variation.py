@@ -217,7 +217,7 @@ def test_initial_friction_in_newtons_whatever_the_limit(limit: dict[str, float])
         assert isinstance(truck, sw.Vehicle)
         initial = [axle.initial_friction for axle in truck.axles]
         assert initial == pytest.approx(expected, rel=1e-14)
-        assert found.axle_loads.max[row] == pytest.approx(found.run(row).axle_loads.max, rel=1e-12)
+        assert found.axle_loads.max[row] == pytest.approx(found.run(row).axle_loads.max(axis=0))
     tables["values"]["initial_friction"] = 13e3
     with pytest.raises(ValueError, match="within the friction limit of axle 1, 1"):
         sw.ensemble(BRIDGE, TRUCK, samples=2, **tables, **GIVEN)

@@ -59,6 +59,11 @@ impl Study {
         let _mode = Standard::set();
         samples.check(&self.vehicles())?;
         self.check_factors(samples)?;
+        if !self.shares {
+            // Before its entry a vehicle comes from the farther away, the faster it is.
+            let fastest = samples.speeds.iter().copied().fold(0.0, f64::max);
+            (0..self.kinds.len()).try_for_each(|kind| self.check_road(kind, fastest))?;
+        }
         let layout = self.layout(samples);
         let count = samples.count;
         check_room(count, &layout)?;
