@@ -265,7 +265,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
                 assert_eq!(own.results.digests[0], found.results.digests[sample]);
                 // No more often than it must: the bound on frequencies is not off by more than some factor.
                 let longest = step.unwrap_or(f64::INFINITY).min(limit);
-                let coarser = halved(&found, sample) == 0 || taken * 2.0 > 0.25 * longest;
+                let coarser = halved(&found, sample) == 0 || taken * 2.0 > 0.05 * longest;
                 assert!(coarser, "{name}, sample {sample}: {taken} s, {longest} s");
             }
         }
