@@ -133,9 +133,11 @@ def ensemble(
         ``"reactions"``, ``"clamp_moments"``; by default all there are.
     advance : float, optional
         Longest way per step [m], for vehicles alone at constant speed from the left, in place of
-        `step`. Where a sample needs shorter steps, by its speed and stiffness, they are halved.
+        `step`. Where a sample needs shorter steps to be stable, by its speed and stiffness, they
+        are halved; whether they are short enough to be accurate is left to the caller.
     step : float, optional
-        Longest time step [s]; by default as for `cross`.
+        Longest time step [s]; by default as for `cross`. Vehicles alone at constant speed from the
+        left never take longer ways than they do by default: for that give `advance`.
     mask : float, optional
         Impact factors are not given where the static value is at most this fraction of the largest
         among the sections.
