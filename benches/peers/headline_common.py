@@ -7,6 +7,7 @@ serves them, here with the speed in it too, which the engine leaves free.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
@@ -225,7 +226,7 @@ def elevations(x: Array) -> Array:
     return np.array([fade * road(number).elevation(x) for number in range(ROADS)])
 
 
-class Peer:
+class Peer(ABC):
     """A loop over crossings with its tables; its results stay in place from run to run."""
 
     name: ClassVar[str]
@@ -238,9 +239,9 @@ class Peer:
         #: Likewise by axle, shape (samples, 4, axles).
         self.loads = np.full((samples, 4, 2), np.nan)
 
+    @abstractmethod
     def run(self) -> None:
         """All samples."""
-        raise NotImplementedError
 
 
 # ---- Compiled: arithmetic, and what happens to a crossing once its chunks are looked at. ----
