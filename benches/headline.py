@@ -20,6 +20,7 @@ WARM_UP: Final = 2000
 
 PARAMETERS: Final[dict[str, Any]] = {
     "modes": 3,
+    "damping": 0.0,
     "approach": 30.0,
     "ramp": 10.0,
     "speed": 22.86,

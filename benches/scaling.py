@@ -57,6 +57,7 @@ class Case:
             "road": sw.ISO8608("B", period=128.0),
             "speed": 22.86,
             "modes": self.modes,
+            "damping": 0.0,
             "approach": 30,
             "ramp": 10,
             "advance": 0.02286,

@@ -27,6 +27,7 @@ preset = "kishan-1973"
 speed = 22.86
 drive = "constant-traction"
 modes = 3
+damping = 0
 """
 
 #: So soft that the vehicle does not come out of the sag.
@@ -93,7 +94,7 @@ def test_summary_of_every_kind_of_case(tmp_path: Path, capsys: pytest.CaptureFix
     case.write_text(
         CASE.replace("spans = [18.288, 18.288]", "spans = [18.0]")
         .replace("= 3\n[v", '= 2\nends = ["clamped", "pinned"]\n[v')
-        .replace("modes = 3", f"modes = 2\ndamping = {matrix}"),
+        .replace("modes = 3\ndamping = 0", f"modes = 2\ndamping = {matrix}"),
         encoding="utf-8",
     )
     assert main(["cross", str(case)]) == 0
@@ -229,7 +230,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (CASE.replace("6037.6", "-1"), r"[bridge]: mass"),
         (CASE.replace("speed", "sped"), "did you mean 'speed'?"),
-        (CASE + "x = [", "line 13: is not valid TOML: Invalid value: x = ["),
+        (CASE + "x = [", "line 14: is not valid TOML: Invalid value: x = ["),
         (CASE.replace("modes = 3", "modes = 9"), "modes = 9: must be 1 to 6"),
         (CASE.replace("traction", "traktion"), 'drive = "constant-traktion"'),
     ],

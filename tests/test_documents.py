@@ -17,6 +17,9 @@ ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TRAFFIC = "[[traffic]]"
 
+#: What is shown says how much the bridge is damped.
+pytestmark = pytest.mark.filterwarnings("error::spanwise.DampingWarning")
+
 
 def blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
@@ -39,8 +42,13 @@ def test_case_files_in_the_readme() -> None:
     for block in found:
         tables = tomllib.loads(block)
         bridge = {"spans": [20.0, 20.0], "EI": 5e9, "mass": 8e3}
-        missing = {"bridge": bridge, "crossing": {"speed": 20.0}}
+        missing = {"bridge": bridge, "crossing": {"speed": 20.0, "damping": 0.02}}
         sw.Case.from_dict({**missing, **tables}).run(modes=2)
+
+
+@pytest.mark.parametrize("name", sorted(each.name for each in ROOT.glob("examples/*.toml")))
+def test_example_cases_say_their_damping(name: str) -> None:
+    assert "damping" in sw.Case.read(ROOT / "examples" / name).crossing
 
 
 def test_files_that_the_readme_names_are_there() -> None:

@@ -148,7 +148,7 @@ def test_interrupt(drive: str) -> None:
         try:
             sw.ensemble(
                 bridge, sw.vehicles.kishan_1973(), samples={LONG}, speed=20.0, drive={drive!r},
-                road=sw.ISO8608("B"),
+                road=sw.ISO8608("B"), damping=0.0,
             )
         except KeyboardInterrupt:
             print(time.perf_counter() - sent[0])
@@ -179,6 +179,7 @@ def test_interrupt_while_the_bridge_is_prepared() -> None:
         try:
             while True:
                 sw.ensemble(bridge, sw.vehicles.kishan_1973(), samples=0, speed=20.0, modes=3,
+                            damping=0.0,
                             sections=np.linspace(0.0, 159.0 + np.random.rand(), 900))
         except KeyboardInterrupt:
             print(time.perf_counter() - sent[0])

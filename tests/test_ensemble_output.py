@@ -34,6 +34,7 @@ period = 128.0
 [crossing]
 speed = 22.86
 modes = 3
+damping = 0.01
 approach = 20
 ramp = 5
 advance = 0.03

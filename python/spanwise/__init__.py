@@ -2,6 +2,7 @@
 
 from spanwise import roads, vehicles
 from spanwise._core import __version__
+from spanwise._warnings import DampingWarning, PlausibilityWarning
 from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case
 from spanwise.crossing import cross
@@ -37,6 +38,7 @@ __all__ = [
     "Bump",
     "Camber",
     "Case",
+    "DampingWarning",
     "Ensemble",
     "Envelope",
     "Extremes",
@@ -49,6 +51,7 @@ __all__ = [
     "Modes",
     "MovingMasses",
     "Passage",
+    "PlausibilityWarning",
     "Pothole",
     "Profile",
     "Ramp",

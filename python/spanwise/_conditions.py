@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
 
 from spanwise._checks import count, flag, number, numbers, word
+from spanwise._warnings import DampingWarning
 from spanwise.bridge import Bridge
-from spanwise.damping import Damping, resolved
+from spanwise.damping import Damping, plain_damping, resolved
 
 Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
 
@@ -17,6 +19,12 @@ APPROACH: Final = 100.0
 
 #: Way on which unevenness fades in at the start of the approach unless given [m].
 RAMP: Final = 20.0
+
+#: What is said where nobody has said how much the bridge is damped.
+UNDAMPED: Final = (
+    "damping: not given, so the bridge is not damped at all; write damping = 0.02 for 2 % of "
+    "critical in each mode, or damping = 0 if none is meant"
+)
 
 
 @dataclass(frozen=True)
@@ -47,7 +55,7 @@ class Conditions:
         *,
         uneven: bool,
         modes: int | None,
-        damping: Damping,
+        damping: Damping | None,
         approach: float | None,
         ramp: float | None,
         tail: float,
@@ -65,6 +73,9 @@ class Conditions:
         if ramp is None:
             ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
         modes = count("modes", bridge.default_modes() if modes is None else modes)
+        if damping is None:
+            warnings.warn(UNDAMPED, DampingWarning, stacklevel=3)
+            damping = 0.0
         ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
         beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
         approach, tail, mask = number("approach", approach), number("tail", tail), masked(mask)
@@ -85,10 +96,8 @@ class Conditions:
             "step": None if step is None else number("step", step),
             "sections": None if sections is None else numbers("sections", sections),
         }
-        plain: object = matrix.tolist() if matrix is not None else ratios
-        if matrix is None and len(ratios) == 1:
-            plain = ratios[0]
-        return cls(core, {"damping": plain, **common, "mask": mask}, modes, mask)
+        settings = {"damping": plain_damping(damping), **common, "mask": mask}
+        return cls(core, settings, modes, mask)
 
 
 def masked(mask: object) -> float:

@@ -14,6 +14,7 @@ from spanwise._files import write_files
 from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import plain
 from spanwise._vehicletable import table_of
+from spanwise.damping import in_words
 from spanwise.population import FACTORS, Ensemble
 from spanwise.roads import Road
 from spanwise.traffic import plain_drive
@@ -30,6 +31,7 @@ def arrays(ensemble: Ensemble) -> dict[str, Any]:
         "frequencies": ensemble.frequencies,
         "numbers": ensemble.first + np.arange(ensemble.samples, dtype=np.uint64),
         "digests": ensemble.digests,
+        "damping": np.array(in_words(ensemble.settings["damping"], ensemble.frequencies)),
         "hash": np.array(ensemble.hash),
         "failures": np.array([each.sample for each in ensemble.failures], dtype=np.uint64),
         "load_coefficients": ensemble.load_coefficients,
@@ -95,6 +97,7 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
         "elapsed": ensemble.elapsed,
         "sections": ensemble.sections,
         "supports": ensemble.supports,
+        "damping": in_words(ensemble.settings["damping"], ensemble.frequencies),
         "failures": [
             {"sample": each.sample, "step": each.step, "cause": each.cause}
             for each in ensemble.failures

@@ -13,6 +13,7 @@ from spanwise._events import Event
 from spanwise._recipe import Recipe
 from spanwise._variation import Factors
 from spanwise.columns import ROUNDING, SampleExtremes, Sense
+from spanwise.damping import in_words
 from spanwise.population import FACTORS, Ensemble
 from spanwise.roads import ISO8608, Road, Sum
 from spanwise.summary import _road as road_in_words
@@ -74,7 +75,9 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
         f"ensemble  {_many(ensemble.samples)} from number {ensemble.first} of seed "
         f"{ensemble.seed}{failed}"
     )
-    yield f"bridge    {ensemble.bridge!r}; {len(ensemble.frequencies)} modes"
+    yield f"bridge    {ensemble.bridge!r}"
+    damping = in_words(settings["damping"], ensemble.frequencies)
+    yield f"modes     {len(ensemble.frequencies)}; damping {damping}"
     for number, event in enumerate(recipe.events[:SHOWN]):
         kind = f"kind {number}: " if len(recipe.events) > 1 else ""
         yield f"vehicle   {kind}{', '.join(map(_passage, event))}"

@@ -99,6 +99,7 @@ class Case:
     ... class = "B"
     ... [crossing]
     ... speed = 22.86             # m/s
+    ... damping = 0.02            # of critical
     ... ''')
     >>> run = case.run(modes=3)
     >>> many = case.ensemble(samples=20, modes=3)

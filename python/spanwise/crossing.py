@@ -28,7 +28,7 @@ def cross(
     speed: float | None = None,
     modes: int | None = None,
     drive: Drive = "constant-speed",
-    damping: Damping = 0.0,
+    damping: Damping | None = None,
     road: Road | None = None,
     approach: float | None = None,
     ramp: float | None = None,
@@ -66,7 +66,8 @@ def cross(
     damping : float, array_like or Rayleigh, optional
         Ratio to critical damping, one for all modes or one for each; `Rayleigh`, or a table with
         the key ``rayleigh`` and the value ``[alpha, beta]`` or ``{"alpha": ..., "beta": ...}``; or
-        the damping matrix C at the moving masses [N s/m], shape (stations, stations).
+        the damping matrix C at the moving masses [N s/m], shape (stations, stations). Unless given
+        the bridge is not damped, with a warning; 0 says that this is meant.
     road : Road, optional
         The road; smooth by default.
     approach : float, optional
@@ -112,6 +113,8 @@ def cross(
 
     Warns
     -----
+    DampingWarning
+        If `damping` is not given.
     UserWarning
         If a vehicle brakes or accelerates and has all its centres of mass at road level, if its
         brakes never come on, or if it stops before it reaches the bridge.

@@ -117,6 +117,34 @@ def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[fl
     )
 
 
+def plain_damping(damping: Damping) -> object:
+    """What `resolved` takes, as a case file writes it."""
+    if isinstance(damping, Mapping):
+        damping = _rayleigh(damping["rayleigh"])
+    if isinstance(damping, Rayleigh):
+        return {"rayleigh": [damping.alpha, damping.beta]}
+    values = np.asarray(damping, dtype=np.float64)
+    return values.item() if values.size == 1 and values.ndim < 2 else values.tolist()
+
+
+def in_words(plain: Any, frequencies: ArrayLike) -> str:
+    """How much damping there is, of `plain_damping` and the frequencies of the modes [Hz]."""
+    if isinstance(plain, Mapping):
+        rayleigh = _rayleigh(plain["rayleigh"])
+        found = ", ".join(f"{100.0 * ratio:.3g}" for ratio in rayleigh.ratios(frequencies))
+        return (
+            f"Rayleigh alpha {rayleigh.alpha:.4g} /s, beta {rayleigh.beta:.4g} s: {found} % of "
+            "critical"
+        )
+    values = np.asarray(plain)
+    if values.ndim > 1:
+        return "by a matrix"
+    if not values.any():
+        return "none"
+    percent = [f"{100.0 * ratio:.4g}" for ratio in np.atleast_1d(values)]
+    return f"{', '.join(percent)} % of critical{' in each mode' if values.ndim == 0 else ''}"
+
+
 def _rayleigh(value: object) -> Rayleigh:
     """From a pair or a table."""
     if isinstance(value, Mapping):

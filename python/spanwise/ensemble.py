@@ -61,7 +61,7 @@ def ensemble(
     values: Mapping[str, ArrayLike] | None = None,
     modes: int | None = None,
     drive: Drive = "constant-speed",
-    damping: Damping = 0.0,
+    damping: Damping | None = None,
     approach: float | None = None,
     ramp: float | None = None,
     tail: float = 0.0,
@@ -161,6 +161,8 @@ def ensemble(
 
     Warns
     -----
+    DampingWarning
+        If `damping` is not given.
     UserWarning
         If what a factor multiplies is 0 in all vehicles, or is the damping of a bridge without.
 

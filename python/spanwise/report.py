@@ -15,6 +15,7 @@ from spanwise._files import write_files
 from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import envelope, history, places, plain, quantities, stop
 from spanwise._vehicletable import table_of
+from spanwise.damping import in_words
 from spanwise.run import Quantity, Run
 from spanwise.table import COLUMNS
 
@@ -39,6 +40,7 @@ def as_dict(run: Run) -> dict[str, Any]:
         "sections": run.sections,
         "supports": run.supports,
         "frequencies": run.frequencies,
+        "damping": in_words(run.settings["damping"], run.frequencies),
         "final_speed": run.final_speed,
         "vehicles": [_vehicle(run, k) for k in range(len(run.passages))],
         "lift_offs": [asdict(each) for each in run.lift_offs],

@@ -12,6 +12,7 @@ from spanwise._remarks import remarks
 from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
+from spanwise.damping import in_words
 from spanwise.layout import Support
 from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.run import Envelope, Extremes, Quantity, Run
@@ -63,8 +64,7 @@ def _description(run: Run) -> Iterator[str]:
         [*map(_support, bridge.springs), *(f"hinge at {x:g} m" for x in bridge.hinges)]
     )
     rigidities = _rigidity(bridge)
-    ratios = np.asarray(used["damping"])
-    damping = f"ratio {_list(np.atleast_1d(ratios), '.4g')}" if ratios.ndim < 2 else "by a matrix"
+    damping = in_words(used["damping"], run.frequencies)
     yield f"bridge    {bridge.length:g} m, {held}"
     yield (
         f"          {rigidities}{len(bridge.masses)} moving masses, "
