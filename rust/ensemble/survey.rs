@@ -21,11 +21,12 @@ pub fn survey<L: Lane>(
     chunks: Option<&[Chunk]>,
     glanced: &mut Vec<[L; 2]>,
 ) {
-    // What is known when this is compiled runs much faster: the usual numbers of modes and axles.
+    // What is known when this is compiled runs much faster: the usual numbers of modes and axles. Not in debug builds,
+    // which it would make long.
     macro_rules! sizes {
         ($($c:literal $a:literal),*) => {
             match (stretch.widths.coordinates, if chunks.is_some() { stretch.widths.axles } else { 0 }) {
-                $(($c, $a) => survey_sizes($c, $a, watched, rows, stretch, chunks, glanced),)*
+                $(($c, $a) if !cfg!(debug_assertions) => survey_sizes($c, $a, watched, rows, stretch, chunks, glanced),)*
                 (c, a) => survey_sizes(c, a, watched, rows, stretch, chunks, glanced),
             }
         };
