@@ -102,17 +102,6 @@ def test_progress() -> None:
     assert told == [(0, 0)]
 
 
-def test_a_line_of_progress(capsys: pytest.CaptureFixture[str]) -> None:
-    sw.ensemble(BRIDGE, TRUCK, samples=100, progress=True, **GIVEN)
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.count("\n") == 1
-    assert "] 100 of 100, " in err
-    assert max(map(len, err.rstrip("\n").split("\r"))) < 80
-    sw.ensemble(BRIDGE, TRUCK, samples=2, progress=False, **GIVEN)
-    assert capsys.readouterr().err == ""
-
-
 def test_what_the_listener_raises_ends_the_work() -> None:
     class Enough(Exception):
         pass

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from spanwise._ensemblefile import as_dict, npz_pieces
-from spanwise._files import write_files
+from spanwise._ensemblefile import as_dict, npz_writer
+from spanwise._files import Content, check_targets, write_files
 from spanwise.case import Case, CaseError
 from spanwise.report import json_lines
 
@@ -86,6 +85,8 @@ def run(options: argparse.Namespace) -> str:
     if options.out is not None and options.out.suffix != ".npz":
         raise ValueError(f"--out {options.out}: must end in .npz")
     case = Case.read(options.case)
+    named = [Path(each) for each in (options.json, options.out) if each not in (None, "-")]
+    check_targets(named, case.files)
     given = {
         key: getattr(options, key)
         for key in ("modes", "threads")
@@ -93,9 +94,9 @@ def run(options: argparse.Namespace) -> str:
     }
     given |= {key: getattr(options, key) for key in ("samples", "seed", "first")}
     with _errors(given):
-        found = case.ensemble(**given, progress=sys.stderr.isatty())
+        found = case.ensemble(**given, progress=True)
     text = found.summary() + "\n"
-    files: list[tuple[Path, Iterable[bytes]]] = []
+    files: list[tuple[Path, Content]] = []
     if options.json is not None:
         table = json_lines(as_dict(found))
         if options.json == "-":
@@ -103,6 +104,6 @@ def run(options: argparse.Namespace) -> str:
         else:
             files.append((Path(options.json), [table.encode()]))
     if options.out is not None:
-        files.append((options.out, npz_pieces(found)))
-    write_files(files)
+        files.append((options.out, npz_writer(found)))
+    write_files(files, inputs=case.files)
     return text

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from io import BytesIO
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 
@@ -54,14 +53,12 @@ def arrays(ensemble: Ensemble) -> dict[str, Any]:
 
 def write_npz(ensemble: Ensemble, path: Path) -> None:
     """The archive, complete or not at all."""
-    write_files([(path, npz_pieces(ensemble))])
+    write_files([(path, npz_writer(ensemble))])
 
 
-def npz_pieces(ensemble: Ensemble) -> Iterator[bytes]:
-    """The archive in one piece, made when it is asked for."""
-    buffer = BytesIO()
-    np.savez(buffer, **arrays(ensemble))
-    yield buffer.getvalue()
+def npz_writer(ensemble: Ensemble) -> Callable[[BinaryIO], None]:
+    """What writes the archive, array by array."""
+    return lambda stream: np.savez(stream, **arrays(ensemble))
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -41,6 +41,15 @@ def _found(table: object, folder: Path) -> object:
     if isinstance(table, Mapping) and isinstance(table.get("file"), str):
         return {**table, "file": str(folder / table["file"])}
     return table
+
+
+def files_in(tables: Mapping[str, Any], folder: Path) -> Iterator[Path]:
+    """The files that the roads of a case are read from."""
+    for own in (tables, *tables.get("traffic", ())):
+        roads = own.get("road", ())
+        for each in roads if isinstance(roads, list) else [roads]:
+            if isinstance(each, Mapping) and isinstance(each.get("file"), str):
+                yield folder / each["file"]
 
 
 def passage_of(table: object, folder: Path, elsewhere: Home) -> Passage:

@@ -6,14 +6,14 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import shown
 from spanwise._keys import Keys, suggestion
-from spanwise._traffictable import OWN, passage_of, road_in
+from spanwise._traffictable import OWN, files_in, passage_of, road_in
 from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
@@ -84,6 +84,8 @@ class Case:
         The road, if the case has one.
     source : str
         Name of the file, for messages.
+    files : tuple of Path
+        The file itself, and the files of roads that it names.
 
     Examples
     --------
@@ -110,6 +112,7 @@ class Case:
     crossing: dict[str, Any] = field(default_factory=dict)
     road: Road | None = None
     source: str = "case"
+    files: tuple[Path, ...] = ()
 
     @classmethod
     def read(cls, path: str | Path) -> Case:
@@ -123,7 +126,8 @@ class Case:
             A ValueError: if it is not a case file, or a value in it is not allowed.
         """
         path = Path(path)
-        return cls.parse(read_text(path), source=str(path), folder=path.parent)
+        case = cls.parse(read_text(path), source=str(path), folder=path.parent)
+        return replace(case, files=(path, *case.files))
 
     @classmethod
     def parse(cls, text: str, source: str = "case", folder: str | Path = ".") -> Case:
@@ -187,7 +191,8 @@ class Case:
                     passages.append(passage_of(table, folder, _home))
         with _errors_in(f"{source}, [crossing]"):
             CROSSING.check_known(tables["crossing"], _home)
-        return cls(bridge, tuple(passages), dict(tables["crossing"]), road, source)
+        files = tuple(files_in(tables, folder))
+        return cls(bridge, tuple(passages), dict(tables["crossing"]), road, source, files)
 
     @property
     def vehicle(self) -> AnyVehicle:

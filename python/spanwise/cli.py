@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import os
-import sys
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -14,7 +12,9 @@ from spanwise import _ensemblecommand
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._figures import figure_files
-from spanwise._files import write_files
+from spanwise._files import Content, write_files
+from spanwise._signals import Terminated, terminable
+from spanwise._streams import say, tell
 from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
@@ -22,21 +22,33 @@ from spanwise.report import json_text
 from spanwise.roads import ISO8608, Profile, Road, Smooth
 from spanwise.summary import roughness, summary
 
-BAD_INPUT, FAILURE, INTERRUPTED = 2, 1, 130
+BAD_INPUT, FAILURE, INTERRUPTED, SIGNALLED = 2, 1, 130, 128
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; the exit code is 0, 2 for bad input, 1 if the numerics fail."""
+    """Run the command; the exit code is 0, 2 for bad input, 1 if the numerics fail.
+
+    What ends it by a signal has the code of the shell, 128 and the number of the signal.
+    """
+    try:
+        with terminable():
+            return _main(arguments)
+    except Terminated as signal:
+        tell("spanwise: terminated")
+        return SIGNALLED + signal.number
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     try:
         options = _parser().parse_args(arguments)
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", UserWarning)
             text = options.work(options)
         for each in told:
-            print(f"spanwise: warning: {each.message}", file=sys.stderr)
-        _say(text)
+            tell(f"spanwise: warning: {each.message}")
+        say(text)
     except KeyboardInterrupt:
-        print("spanwise: interrupted", file=sys.stderr)
+        tell("spanwise: interrupted")
         return INTERRUPTED
     except (ValueError, ImportError) as error:
         return _complain(str(error), BAD_INPUT)
@@ -50,8 +62,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        self.print_usage(sys.stderr)
+        tell(self.format_usage().rstrip())
         raise SystemExit(_complain(message, BAD_INPUT))
+
+    def _print_message(self, message: str, file: object = None) -> None:
+        say(message)
 
 
 def _parser() -> _Parser:
@@ -171,7 +186,7 @@ def _road(options: argparse.Namespace) -> str:
             road = Profile.read_csv(options.file, **given)
         text = roughness(road, options.start, options.end) + "\n"
     for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
-        print(f"spanwise: warning: {message}", file=sys.stderr)
+        tell(f"spanwise: warning: {message}")
     return text
 
 
@@ -183,7 +198,7 @@ def _cross(options: argparse.Namespace) -> str:
     """Computes the crossing, writes the files asked for, and gives the text to print."""
     case = Case.read(options.case)
     run = case.run(**_overrides(options, case))
-    files: list[tuple[Path, Iterable[bytes]]] = []
+    files: list[tuple[Path, Content]] = []
     folders = []
     text = summary(run) + "\n"
     if options.json == "-":
@@ -196,7 +211,7 @@ def _cross(options: argparse.Namespace) -> str:
     if options.plot is not None:
         folders.append(options.plot)
         files += [(options.plot / name, [content]) for name, content in figure_files(run)]
-    write_files(files, folders)
+    write_files(files, folders, case.files)
     return text
 
 
@@ -219,17 +234,6 @@ def _overrides(options: argparse.Namespace, case: Case) -> dict[str, object]:
     return given
 
 
-def _say(text: str) -> None:
-    """Prints to standard output, whose reader may have gone."""
-    try:
-        print(text, end="", flush=True)
-    except OSError as error:
-        # Nothing more can be written: what is left is not to be tried again when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if not isinstance(error, BrokenPipeError):
-            raise OSError(error.errno, error.strerror, "standard output") from error
-
-
 def _complain(message: str, code: int) -> int:
-    print(f"spanwise: error: {message}", file=sys.stderr)
+    tell(f"spanwise: error: {message}")
     return code

@@ -145,7 +145,8 @@ def ensemble(
         Threads; by default as many as the processor has. Results do not depend on them.
     progress : callable or bool, optional
         Called with the number of samples done and that of all, at most ten times a second and at
-        the end; what it raises ends the computation. Or True for a line on standard error.
+        the end; what it raises ends the computation. Or True for a line on standard error: over
+        itself on a terminal, elsewhere a line a minute.
 
     Returns
     -------
