@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from spanwise._checks import array, shown
 from spanwise._keys import suggestion
+from spanwise._warnings import PlausibilityWarning
 
 Array: TypeAlias = NDArray[np.float64]
 Sides: TypeAlias = tuple[Array, Array | None]
@@ -127,7 +128,7 @@ def check_flexibility(
                 f"frequencies: the modes explain at most {100.0 * part:.2g} % of the deflection "
                 "under a load at any section; are they in rad/s instead of Hz, the shapes not "
                 "scaled to unit modal mass [kg^-1/2], or the modes too few?",
-                UserWarning,
+                PlausibilityWarning,
                 stacklevel=3,
             )
 

@@ -372,7 +372,7 @@ class Bridge:
 
         Warns
         -----
-        UserWarning
+        PlausibilityWarning
             If the modes explain very little of the lines of deflection, as with frequencies in
             rad/s.
         """

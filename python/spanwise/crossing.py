@@ -9,6 +9,7 @@ from typing import TypeAlias
 from spanwise import _core
 from spanwise._checks import number, shown
 from spanwise._conditions import Conditions, Recovery
+from spanwise._plausible import doubt
 from spanwise._remarks import remarks
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
@@ -115,6 +116,9 @@ def cross(
     -----
     DampingWarning
         If `damping` is not given.
+    PlausibilityWarning
+        If bridge, loads, springs, speed or a measured road are far outside of what there is, as
+        those in other units are. Each message begins with the name of what it doubts.
     UserWarning
         If a vehicle brakes or accelerates and has all its centres of mass at road level, if its
         brakes never come on, or if it stops before it reaches the bridge.
@@ -169,6 +173,15 @@ def cross(
         "step": core.step,
     }
     run = Run(bridge, passages, surface, settings, core)
+    doubt(
+        bridge,
+        run.frequencies[0],
+        [passages],
+        speed=speed,
+        drive=driven,
+        road=surface,
+        gravity=conditions.core["gravity"],
+    )
     for k in range(len(passages)):
         for remark in remarks(run, k):
             whose = "" if len(passages) == 1 else f"vehicles[{k}]: "

@@ -25,6 +25,7 @@ from spanwise._events import (
     speeds_told,
 )
 from spanwise._keys import suggestion
+from spanwise._plausible import doubt
 from spanwise._progress import Bar
 from spanwise._recipe import Recipe
 from spanwise._variation import factors_of, idle, refuse_overdamped
@@ -164,6 +165,8 @@ def ensemble(
     -----
     DampingWarning
         If `damping` is not given.
+    PlausibilityWarning
+        As for `cross`.
     UserWarning
         If what a factor multiplies is 0 in all vehicles, or is the damping of a bridge without.
 
@@ -213,6 +216,15 @@ def ensemble(
     refuse_overdamped(varied, conditions.core["damping"], first)
     for remark in idle(varied, events, conditions.core):
         warnings.warn(remark, UserWarning, stacklevel=2)
+    doubt(
+        bridge,
+        bridge.modes(conditions.modes).frequencies[0],
+        events,
+        speed=float(speeds.column.max(initial=0.0)),
+        drive=driven,
+        road=shared,
+        gravity=conditions.core["gravity"],
+    )
     advance = None if advance is None else number("advance", advance)
     looked_at = _quantities(bridge, quantities)
     simple = all(is_simple(event, driven) for event in events)

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Final, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,13 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from spanwise import _core
 from spanwise._checks import flag, number, numbers, pairs, shown, word
 from spanwise._keys import suggestion
+from spanwise._warnings import PlausibilityWarning
+from spanwise.roads._doubts import doubts
 from spanwise.roads.base import CONTACT_PATCH, Road
 
 Array: TypeAlias = NDArray[np.float64]
-
-#: Median slope of a profile above which it is hardly in metres [-]: that of class H, the roughest,
-#: sampled finely, is about 0.3, while a very smooth road with elevations in millimetres has more.
-_STEEP: Final = 0.5
 
 #: Number or name of a column.
 Column: TypeAlias = int | str
@@ -52,8 +50,8 @@ class Profile(Road):
 
     Warns
     -----
-    UserWarning
-        If it is so steep that elevations or positions are hardly in metres.
+    PlausibilityWarning
+        If it is so steep that elevations are hardly in metres, or points look like drop-outs.
 
     Notes
     -----
@@ -90,14 +88,8 @@ class Profile(Road):
             max_gap=None if max_gap is None else number("max_gap", max_gap),
         )
         self.__post_init__()
-        slope = float(np.median(np.abs(np.diff(self.elevations) / np.diff(self.x))))
-        if slope > _STEEP:
-            warnings.warn(
-                f"elevations: their median slope is {slope:.3g}; are they in mm? Multiply them by "
-                "1e-3, as scale = (1.0, 1e-3) does in a file",
-                UserWarning,
-                stacklevel=2,
-            )
+        for doubt in doubts(self.x, self.elevations):
+            warnings.warn(doubt, PlausibilityWarning, stacklevel=2)
 
     def _made(self) -> _core.Road:
         return _core.Road.profile(
@@ -153,7 +145,7 @@ class Profile(Road):
 
         Warns
         -----
-        UserWarning
+        PlausibilityWarning
             As for `Profile`.
         """
         factors = numbers("scale", scale)

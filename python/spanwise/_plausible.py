@@ -1,0 +1,197 @@
+"""Input that is allowed but hardly meant: other units, slips, points too coarse.
+
+Each check is a function that gives the sentences to say, most often none. The bounds are about ten
+times as wide as what is published, so that footbridges, models in laboratories and long spans pass.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._warnings import PlausibilityWarning
+from spanwise.bridge import Bridge
+from spanwise.roads import Profile, Road, Sum
+from spanwise.traffic import Drive, Passage, Speeds
+from spanwise.vehicle import Vehicle
+
+Array: TypeAlias = NDArray[np.float64]
+Event: TypeAlias = Sequence[Passage]
+
+#: How many times lower or higher than the limits of EN 1991-2, figure 6.10, a first frequency may
+#: be. Bridges with slender spans lie far below the lower limit, few come near to the upper one.
+_LOWER, _UPPER = 10.0, 5.0
+
+#: Span below which the lower limit says nothing [m]: strips in laboratories are as slow.
+_SHORT: Final = 4.0
+
+#: Static deflection under the vehicles by span beyond which no bridge is used; codes allow 1/250.
+_DEFLECTED: Final = 1.0 / 20.0
+
+#: Largest axle load that is less than a pedestrian [N], and the mass of a span from which on it is
+#: no model in a laboratory [kg]. A load of 1 is a unit load.
+_LIGHT, _FULL_SIZE, _UNIT = 500.0, 5e3, 1.0
+
+#: Speeds that cars and trains do not reach [m/s], and what tells trains: the stiffness of a wheel
+#: on a rail [N/m], the length of a train of forces [m].
+_ROAD_SPEED, _RAIL_SPEED, _ON_RAILS, _LONG = 60.0, 120.0, 5e7, 15.0
+
+#: How far springs may give way under the weight that they carry [m]: then it bounces at 0.5 Hz.
+_SAG: Final = 1.0
+
+#: Frequency up to which a vehicle feels waves that a road should hold [Hz], and a spacing of its
+#: points that is fine at any speed [m].
+_FELT, _FINE = 10.0, 0.5
+
+
+def doubt(
+    bridge: Bridge,
+    first_frequency: float,
+    events: Iterable[Event],
+    *,
+    speed: float | None,
+    drive: Drive,
+    road: Road,
+    gravity: float,
+) -> None:
+    """Warn the caller's caller of what a crossing, or the events of an ensemble, hardly mean."""
+    span = _longest_span(bridge)
+    moving = float(bridge.masses.sum()) * span / bridge.length
+    found = list(_frequency(bridge, span, first_frequency))
+    seen: set[str] = set()
+    for passage in (each for event in events for each in event):
+        fastest = _fastest(passage, speed, drive)
+        for key, said in (
+            ("deflection", _deflection(passage, span, moving, first_frequency, gravity)),
+            ("loads", _loads(passage, moving, gravity)),
+            ("springs", _springs(passage, gravity)),
+            ("speed", _speed(passage, fastest)),
+            ("spacing", _spacing(passage.road or road, fastest)),
+        ):
+            # Of many vehicles the first of each kind of slip tells enough.
+            if said and key not in seen:
+                seen.add(key)
+                found.append(said)
+    for said in found:
+        warnings.warn(said, PlausibilityWarning, stacklevel=3)
+
+
+def _longest_span(bridge: Bridge) -> float:
+    bounds = bridge.span_bounds.tolist()
+    return max((b - a for a, b in pairwise(bounds)), default=bridge.length)
+
+
+def _fastest(passage: Passage, speed: float | None, drive: Drive) -> float:
+    """The speed at the start, or the largest of the speeds in time [m/s]."""
+    own = passage.drive or drive
+    if isinstance(own, Speeds):
+        return max(own.speeds)
+    return passage.speed if passage.speed is not None else speed or 0.0
+
+
+def _frequency(bridge: Bridge, span: float, first: float) -> Iterator[str]:
+    """Of the bridge: EI or mass in other units."""
+    low, high = 23.58 * max(span, _SHORT) ** -0.592, 94.76 * span**-0.748
+    if low / _LOWER < first < high * _UPPER:
+        return
+    usual = f"{first:.3g} Hz, where spans of {span:g} m have about {low:.2g} to {high:.2g} Hz"
+    if not bridge.described:
+        yield f"bridge: its first frequency is {usual}; is it given in N, m, kg and Hz?"
+    elif first < high:
+        yield (
+            f"EI, mass: the first frequency of the bridge is {usual}; is EI in kN m2 instead of "
+            "N m2, E in MPa instead of Pa, or mass in kg instead of kg/m?"
+        )
+    else:
+        yield (
+            f"EI, mass: the first frequency of the bridge is {usual}; is mass in t/m instead of "
+            "kg/m, or EI in N mm2 instead of N m2?"
+        )
+
+
+def _deflection(
+    passage: Passage, span: float, moving: float, first: float, gravity: float
+) -> str | None:
+    """Of a vehicle on the bridge: loads too large for it.
+
+    The deflection is estimated: weight on the span by stiffness of the first mode of a simple beam.
+    """
+    truck = passage.vehicle
+    if moving == 0.0:
+        return None
+    part = min(1.0, span / max(truck.wheelbase, 1e-9))
+    weight = part * float(truck.static_loads(gravity).sum())
+    deflection = weight / (0.5 * moving * (2.0 * np.pi * first) ** 2)
+    if deflection < _DEFLECTED * span:
+        return None
+    return (
+        f"loads, EI: the static axle loads bend a span of {span:g} m by about {deflection:.3g} m; "
+        "are loads in N, masses in kg and EI in N m2?"
+    )
+
+
+def _loads(passage: Passage, moving: float, gravity: float) -> str | None:
+    """Of a vehicle on a bridge that is no model: loads in kN, masses in t."""
+    most = float(passage.vehicle.static_loads(gravity).max())
+    if not 0.0 < most < _LIGHT or most == _UNIT or moving < _FULL_SIZE:
+        return None
+    return (
+        f"loads: the largest axle load is {most:.4g} N, less than that of a pedestrian, on a span "
+        f"of {moving / 1e3:.3g} t; are loads in kN instead of N, or masses in t instead of kg?"
+    )
+
+
+def _springs(passage: Passage, gravity: float) -> str | None:
+    """Of a vehicle on its tyres and suspensions: stiffness in kN/m."""
+    truck = passage.vehicle
+    if not isinstance(truck, Vehicle):
+        return None
+    weight = gravity * truck.total_mass
+    for key in ("tyre_stiffness", "suspension_stiffness"):
+        stiffness = sum(getattr(axle, key) for axle in truck.axles)
+        if weight > _SAG * stiffness > 0.0:
+            return (
+                f"{key}: the vehicle sags by {weight / stiffness:.3g} m on it; is it in kN/m or "
+                "N/mm instead of N/m?"
+            )
+    return None
+
+
+def _speed(passage: Passage, speed: float) -> str | None:
+    """Of a vehicle: speed in km/h. That of a single force is left to theory."""
+    if speed <= _ROAD_SPEED:
+        return None
+    truck = passage.vehicle
+    if isinstance(truck, Vehicle):
+        rails = all(axle.tyre_stiffness >= _ON_RAILS for axle in truck.axles)
+    elif len(truck.axle_positions) == 1:
+        return None
+    else:
+        rails = truck.wheelbase >= _LONG
+    if speed <= (_RAIL_SPEED if rails else _ROAD_SPEED):
+        return None
+    return (
+        f"speed = {speed:g}: m/s, which is {3.6 * speed:.0f} km/h; if {speed:g} km/h are meant, "
+        f"write {speed / 3.6:.4g}"
+    )
+
+
+def _spacing(road: Road, speed: float) -> str | None:
+    """Of a measured road at a speed: points too far apart for what a vehicle feels."""
+    if isinstance(road, Sum):
+        return next(filter(None, (_spacing(each, speed) for each in road.parts)), None)
+    if not isinstance(road, Profile) or road.is_smooth:
+        return None
+    spacing = float(np.median(np.diff(road.x)))
+    if spacing <= max(_FINE, speed / (2.0 * _FELT)):
+        return None
+    return (
+        f"road: its points are {spacing:.3g} m apart, and waves shorter than {2 * spacing:.3g} m, "
+        f"which at {speed:.3g} m/s a vehicle feels from {speed / (2 * spacing):.2g} Hz on, are not "
+        "in it; is x in m?"
+    )

@@ -1,0 +1,74 @@
+"""What of a measured profile is hardly meant: elevations in other units, drop-outs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Way over which slopes are taken [m]: over less, texture measured every millimetre is steep too.
+_BASE: Final = 1.0
+
+#: Median slopes over that way, less their mean, beyond which elevations are hardly in metres [-]:
+#: on a road of class A of ISO 8608 it is 0.0012, of G 0.08, of A in centimetres 0.12, in mm 1.2.
+_STEEP, _VERY_STEEP = 0.1, 0.5
+
+#: How far a point is off the line through its neighbours to be no road [m], and by how many times
+#: what is usual among the others.
+_OFF, _UNUSUAL = 0.15, 20.0
+
+
+def doubts(x: Array, elevations: Array) -> Iterator[str]:
+    """Sentences to say of points that are in order."""
+    dropped = _dropped(x, elevations)
+    if dropped is not None:
+        point, off = dropped
+        yield (
+            f"elevations[{point}] = {elevations[point]:g}: is {off:.3g} m off the points beside "
+            "it; is it a drop-out, or stands for a missing value? Leave such points out"
+        )
+        return
+    slope = _slope(x, elevations)
+    if slope > _VERY_STEEP:
+        yield (
+            f"elevations: their median slope is {slope:.3g}; are they in mm? Multiply them by "
+            "1e-3, as scale = (1.0, 1e-3) does in a file"
+        )
+    elif slope > _STEEP:
+        yield (
+            f"elevations: their median slope is {slope:.3g}, as of the roughest class of ISO 8608; "
+            "are they in cm or inches? Multiply them by 0.01 or 0.0254, as scale = (1.0, 0.01) "
+            "does in a file"
+        )
+
+
+def _slope(x: Array, elevations: Array) -> float:
+    """Median deviation of slopes from their median, over a metre or the points' distance."""
+    length = float(x[-1] - x[0])
+    base = max(min(_BASE, length / 8.0), length / 1e5, float(np.median(np.diff(x))))
+    places = x[0] + base * np.arange(int(length / base) + 1)
+    slopes = np.diff(np.interp(places, x, elevations)) / base
+    return float(np.median(np.abs(slopes - np.median(slopes)))) if len(slopes) else 0.0
+
+
+def _dropped(x: Array, elevations: Array) -> tuple[int, float] | None:
+    """The worst point off the line through its neighbours, and how far, if that is no road."""
+    if len(x) < 4:
+        return None
+    slopes = np.diff(elevations) / np.diff(x)
+    part = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
+    between = elevations[:-2] + part * (elevations[2:] - elevations[:-2])
+    first = elevations[1] - slopes[1] * (x[1] - x[0])
+    last = elevations[-2] + slopes[-2] * (x[-1] - x[-2])
+    off = np.abs(elevations - np.concatenate([[first], between, [last]]))
+    suspects = np.flatnonzero(off > max(_OFF, _UNUSUAL * float(np.median(off))))
+    if len(suspects) == 0:
+        return None
+    # Good points beside a drop-out are off too, but not the farthest from all others.
+    away = np.abs(elevations[suspects] - np.median(elevations))
+    point = int(suspects[np.argmax(away)])
+    return point, float(off[point])

@@ -1,0 +1,215 @@
+"""Implausible input is noticed and never refused; what is unusual on purpose is not."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+from spanwise.cli import main
+
+EI, MASS = 4e9, 9e3
+ROAD: Final = sw.ISO8608("A", seed=3)
+
+
+def bridge(span: float = 20.0, **given: Any) -> sw.Bridge:
+    return sw.Bridge(**{"spans": [span], "EI": EI, "mass": MASS, "stations_per_span": 5, **given})
+
+
+def car(**given: Any) -> sw.Vehicle:
+    axles = [
+        sw.Axle(
+            position=x,
+            tyre_stiffness=given.pop("tyre", 2e6),
+            suspension_stiffness=given.pop("suspension", 1e6),
+        )
+        for x in (2.0, -2.0)
+    ]
+    return sw.Vehicle(**{"mass": 16e3, "pitch_inertia": 4e4, "axles": axles, **given})
+
+
+def soft(key: str) -> sw.Vehicle:
+    stiffness = {"tyre_stiffness": 2e6, "suspension_stiffness": 1e6}
+    stiffness[key] /= 1e3
+    axles = [sw.Axle(position=x, **stiffness) for x in (2.0, -2.0)]
+    return sw.Vehicle(mass=16e3, pitch_inertia=4e4, axles=axles)
+
+
+def forces(*loads: float, spacing: float = 3.0) -> sw.ForceTrain:
+    return sw.ForceTrain(loads=list(loads), spacings=[spacing] * (len(loads) - 1))
+
+
+def cross(of: sw.Bridge, vehicle: Any, speed: float | None = 20.0, **given: Any) -> object:
+    return sw.cross(of, vehicle, speed=speed, **{"modes": 2, "damping": 0.01, **given})
+
+
+def ensemble(of: sw.Bridge, vehicle: Any, speed: float | None = 20.0, **given: Any) -> object:
+    options = {"samples": 2, "modes": 2, "damping": 0.01, **given}
+    return sw.ensemble(of, vehicle, speed=speed, **options)
+
+
+def profile(spacing: float, x: float = 1.0, z: float = 1.0) -> sw.Profile:
+    at = np.arange(-130.0, 170.0, spacing)
+    return sw.Profile(x * at, z * ROAD.elevation(at), max_gap=1e3)
+
+
+DOUBTED: Final[list[tuple[Callable[[Any], object], str]]] = [
+    (lambda go: go(bridge(EI=EI / 1e3), car()), r"^EI, mass: .*kN m2"),
+    (lambda go: go(bridge(EI=EI / 1e6), car(), lift_off=False), r"^EI, mass: .*MPa"),
+    (lambda go: go(bridge(EI=EI * 1e6), car()), r"^EI, mass: .*N mm2"),
+    (lambda go: go(bridge(mass=MASS / 1e3), car()), r"^EI, mass: .*t/m"),
+    (lambda go: go(bridge(mass=MASS * 200.0), car()), r"^EI, mass: .*instead of kg/m"),
+    (lambda go: go(bridge(), forces(1e8, 1e8)), r"^loads, EI: .*by about .* m; are loads in N"),
+    (lambda go: go(bridge(), forces(90.0, 90.0)), r"^loads: .*90 N.*kN"),
+    (lambda go: go(bridge(), car(mass=16.0, pitch_inertia=40.0)), r"^loads: .*masses in t"),
+    (lambda go: go(bridge(), soft("tyre_stiffness")), r"^tyre_stiffness: .*kN/m"),
+    (lambda go: go(bridge(), soft("suspension_stiffness")), r"^suspension_stiffness: .*kN/m"),
+    (lambda go: go(bridge(), car(), 80.0), r"^speed = 80: .*288 km/h; if 80 km/h .* write 22\.22"),
+    (lambda go: go(bridge(), forces(9e4, 9e4), 90.0), r"^speed = 90: .*write 25$"),
+    (lambda go: go(bridge(), forces(*[2e5] * 16), 300.0), r"^speed = 300: .*write 83\.33"),
+    (
+        lambda go: go(bridge(), sw.Passage(vehicle=car(), speed=100.0), None),
+        r"^speed = 100: .*write 27\.78",
+    ),
+    (lambda go: go(bridge(), car(), road=profile(5.0)), r"^road: .*5 m apart.*10 m.*2 Hz"),
+]
+
+
+@pytest.mark.parametrize("go", [cross, ensemble])
+@pytest.mark.parametrize(("call", "says"), DOUBTED, ids=[says for _, says in DOUBTED])
+def test_crossings_are_doubted(
+    go: Callable[..., object], call: Callable[[Any], object], says: str
+) -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        call(go)
+    found = [each for each in told if re.search(says, str(each.message))]
+    assert len(found) == 1
+    assert found[0].category is sw.PlausibilityWarning
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", sw.PlausibilityWarning)
+        call(go)
+
+
+def points(spacing: float = 0.25, scale: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    x = np.arange(0.0, 100.0, spacing)
+    return x, scale * ROAD.elevation(x)
+
+
+def dropped(code: float, at: slice) -> tuple[np.ndarray, np.ndarray]:
+    x, z = points()
+    z[at] = code
+    return x, z
+
+
+@pytest.mark.parametrize(
+    ("made", "says"),
+    [
+        (points(scale=1e3), "in mm"),
+        (points(scale=1e2), "in cm or inches"),
+        (points(0.01, 1e2), "in cm or inches"),
+        (dropped(-9999.0, slice(7, 8)), r"elevations\[7\] = -9999: .*drop-out"),
+        (dropped(-9999.0, slice(70, 90)), r"elevations\[(70|89)\] = -9999: .*drop-out"),
+        (dropped(999.9, slice(0, 1)), r"elevations\[0\] = 999.9: .*drop-out"),
+        (dropped(999.9, slice(399, 400)), r"elevations\[399\] = 999.9: .*drop-out"),
+        (dropped(0.3, slice(50, 51)), r"elevations\[50\] = 0.3: .*drop-out"),
+    ],
+    ids=str,
+)
+def test_profiles_are_doubted(made: tuple[np.ndarray, np.ndarray], says: str) -> None:
+    with pytest.warns(sw.PlausibilityWarning, match=says) as told:
+        sw.Profile(*made)
+    assert len(told) == 1
+
+
+def test_rough_points_every_millimetre_are_not_doubted() -> None:
+    """Texture of a millimetre has slopes of 1 from point to point, and a pothole is deep."""
+    chance = np.random.default_rng(1)
+    x = np.arange(0.0, 60.0, 1e-3)
+    for letter in "ACEG":
+        z = sw.ISO8608(letter, seed=2).elevation(x) + 1e-3 * chance.standard_normal(len(x))
+        sw.Profile(x, z)
+    z[20_000:20_400] -= 0.1
+    sw.Profile(x, z + 500.0 + 0.05 * x)
+
+
+@pytest.mark.parametrize("preset", sorted(sw.vehicles.PRESETS))
+def test_the_catalogue_is_not_doubted(preset: str) -> None:
+    vehicle = sw.Case.from_dict(
+        {
+            "bridge": {"spans": [20.0], "EI": EI, "mass": MASS},
+            "vehicle": {"preset": preset},
+            "crossing": {"speed": 20.0, "damping": 0.02},
+        }
+    ).vehicle
+    for span, rigidity, mass in ((8.0, 8e8, 6e3), (20.0, EI, MASS), (60.0, 9e10, 15e3)):
+        cross(bridge(span, EI=rigidity, mass=mass), vehicle)
+
+
+def test_unusual_structures_are_not_doubted() -> None:
+    """Models in laboratories, footbridges, a suspension bridge, one force at any speed."""
+    small = sw.Axle(position=0.0, tyre_stiffness=4e3, suspension_stiffness=2e3)
+    for span, EI_, mass in (
+        (1.0, 60.0, 7.9),
+        (1.0, 218.0, 3.9),
+        (2.0, 900.0, 12.0),
+        (5.4, 1.5e5, 140.0),
+    ):
+        model = bridge(span, EI=EI_, mass=mass)
+        cross(model, sw.Vehicle(mass=5.0, axles=[small]), 1.0)
+        cross(model, forces(20.0, 20.0, spacing=0.3), 0.5)
+    cross(bridge(40.0, EI=2e9, mass=800.0), forces(700.0), 1.5)
+    # Stiffened by cables, which a beam of the same first frequency stands for.
+    cross(bridge(1000.0, EI=1e14, mass=2e4), car())
+    one = sw.ForceTrain(loads=[1e5], positions=[0.0])
+    for speed in (20.0, 150.0, 400.0):
+        cross(bridge(), one, speed)
+    cross(bridge(), forces(1.0, 1.0))
+
+
+def test_railways_are_not_doubted() -> None:
+    wheels = [
+        sw.Axle(position=x, mass=1.9e3, tyre_stiffness=1.4e9, suspension_stiffness=7e5)
+        for x in (9.0, 6.5, -6.5, -9.0)
+    ]
+    coach = sw.Vehicle(mass=44e3, pitch_inertia=2.7e6, axles=wheels)
+    cross(bridge(25.0, EI=30e9, mass=15e3), coach, 83.3, step=1e-3)
+    cross(bridge(25.0, EI=30e9, mass=15e3), forces(*[1.7e5] * 40), 115.0)
+
+
+def test_a_slip_of_many_vehicles_is_told_once() -> None:
+    kinds = [forces(90.0, 90.0 + k) for k in range(30)]
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        sw.ensemble(bridge(), kinds, samples=30, kind=range(30), speed=20.0, modes=2, damping=0.01)
+    assert len(told) == 1
+    assert told[0].filename == __file__
+
+
+def test_one_kind_can_be_silenced_by_its_first_word() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", "speed", sw.PlausibilityWarning)
+        cross(bridge(), car(), 80.0)
+        with pytest.raises(sw.PlausibilityWarning, match="loads"):
+            cross(bridge(), forces(90.0, 90.0), 80.0)
+
+
+def test_on_the_command_line(tmp_path: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(
+        "[bridge]\nspans = [20.0]\nEI = 4e9\nmass = 9e3\n"
+        '[vehicle]\npreset = "kishan-1973"\n[crossing]\nspeed = 80\ndamping = 0.02\n',
+        encoding="utf-8",
+    )
+    for command in (["cross", str(path)], ["ensemble", str(path), "--samples", "2"]):
+        assert main(command) == 0
+        err = capsys.readouterr().err
+        assert err.startswith("spanwise: warning: speed = 80: m/s, which is 288 km/h")
+        assert err.count("\n") == 1
