@@ -94,11 +94,26 @@ def _fastest(passage: Passage, speed: float | None, drive: Drive) -> float:
     return passage.speed if passage.speed is not None else speed or 0.0
 
 
+def _limits(span: float) -> tuple[float, float]:
+    """First frequencies between which those of most bridges are [Hz]."""
+    return 23.58 * max(span, _SHORT) ** -0.592, 94.76 * span**-0.748
+
+
+def _ends_are_held(bridge: Bridge) -> bool:
+    return {0.0, bridge.length} <= {x for x, _ in bridge.supports}
+
+
 def _frequency(bridge: Bridge, span: float, first: float) -> Iterator[str]:
     """Of the bridge: EI or mass in other units."""
-    low, high = 23.58 * max(span, _SHORT) ** -0.592, 94.76 * span**-0.748
+    low, high = _limits(span)
     if low / _LOWER < first < high * _UPPER:
         return
+    # A cantilever is slower than a span twice as long.
+    if first < low and not _ends_are_held(bridge):
+        span *= 2.0
+        low, high = _limits(span)
+        if low / _LOWER < first:
+            return
     usual = f"{first:.3g} Hz, where spans of {span:g} m have about {low:.2g} to {high:.2g} Hz"
     if not bridge.described:
         yield f"bridge: its first frequency is {usual}; is it given in N, m, kg and Hz?"
