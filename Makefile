@@ -38,9 +38,10 @@ test: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked
 	$(PY) -m pytest
 
-# Random studies by the thousand, other ones each time.
-soak:
+# Random studies by the thousand, other ones each time; every argument with every odd value.
+soak: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked --test ensemble_fuzz -- --ignored --nocapture
+	SPANWISE_SOAK=1 $(PY) -m pytest tests/test_doors.py
 
 # clippy runs in the dev profile: with the settings of maturin in the release
 # profile, the two would keep invalidating each other's build of PyO3.

@@ -11,6 +11,17 @@ from typing import Any, Final
 #: Largest case file that is read [bytes].
 MAX_BYTES: Final = 2**20
 
+#: Most parts of a dotted key: the reader's time and memory grow with their square.
+MAX_PARTS: Final = 16
+
+#: A key of more parts than that, bare or quoted, wherever it stands.
+LONG_KEY: Final = re.compile(
+    r"""(?<![\w.-])(?:PART)(?:[ \t]*+\.[ \t]*+(?:PART)){%d}""".replace(
+        "PART", r"""[\w-]++|"[^"\n]*+"|'[^'\n]*+'"""
+    )
+    % MAX_PARTS
+)
+
 #: A decimal point with a digit on one side only, which TOML does not allow.
 POINT: Final = re.compile(r"(?<![\w.])(\d+\.(?!\d)|\.\d)")
 
@@ -40,6 +51,13 @@ def read_text(path: Path) -> str:
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:
     """The tables of a TOML text."""
+    if len(text) > MAX_BYTES:
+        raise CaseError(
+            f"{source}: text has {len(text)} characters; a case has at most {MAX_BYTES}"
+        )
+    if long := LONG_KEY.search(text):
+        line = text.count("\n", 0, long.start()) + 1
+        raise CaseError(f"{source}, line {line}: a dotted key has at most {MAX_PARTS} parts")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

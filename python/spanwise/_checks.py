@@ -3,24 +3,54 @@
 from __future__ import annotations
 
 import math
+import os
+import reprlib
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sized
 from collections.abc import Set as AbstractSet
+from itertools import islice
 from numbers import Integral, Real
-from typing import Any, TypeAlias, TypeGuard
+from pathlib import Path
+from typing import Any, Final, TypeAlias, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._keys import suggestion
+
 Numbers: TypeAlias = float | Iterable[float]
 
 #: Longest text of an offending value in a message.
-_SHOWN = 80
+_SHOWN: Final = 80
+
+#: Most values in a list, and in an array: what never ends is told before it takes all memory.
+MOST_LISTED: Final = 1_000_000
+MOST_IN_ARRAY: Final = 100_000_000
+
+
+class _Short(reprlib.Repr):
+    """Text of values of any size and depth, also of those that cannot tell theirs."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring, self.maxother = 2 * _SHOWN, sys.maxsize
+        self.maxtuple = self.maxlist = self.maxarray = self.maxdict = self.maxset = _SHOWN
+
+    def repr_int(self, value: int, level: int) -> str:
+        """Of more digits than Python writes, their number."""
+        if value.bit_length() < 1000:
+            return repr(value)
+        digits = int(value.bit_length() * math.log10(2.0)) + 1
+        return f"a whole number of about {digits} digits"
 
 
 def shown(value: object) -> str:
     """The value as text on one line, cut where it is long."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(_Short().repr(value).split())
+    except Exception:
+        # Whatever it is, it is not what was to be, and that is what is to be told.
+        text = f"<{type(value).__name__}>"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
@@ -30,9 +60,10 @@ def number(key: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{key} = {shown(value)}: must be a number")
     try:
-        return float(value)
+        found = float(value)
     except OverflowError:
         raise ValueError(f"{key} = {shown(value)}: is too large") from None
+    return found
 
 
 def finite(key: str, value: object) -> float:
@@ -69,9 +100,10 @@ def numbers(key: str, value: object) -> list[float]:
     value = _unwrapped(value)
     if isinstance(value, Real):
         return [number(key, value)]
-    if is_list(value):
-        return [number(f"{key}[{i}]", each) for i, each in enumerate(value)]
-    raise ValueError(f"{key} = {shown(value)}: must be a number or a list of numbers")
+    return [
+        each if type(each) is float else number(f"{key}[{i}]", each)
+        for i, each in enumerate(items(key, value, "a number or a list of numbers"))
+    ]
 
 
 def whole(key: str, value: object) -> int:
@@ -82,22 +114,30 @@ def whole(key: str, value: object) -> int:
     return int(value)
 
 
+def whole_from(key: str, value: object, least: int, most: int) -> int:
+    """One whole number within limits."""
+    found = whole(key, value)
+    if not least <= found <= most:
+        raise ValueError(f"{key} = {shown(found)}: must be from {least} to {most}")
+    return found
+
+
 def count(key: str, value: object) -> int:
     """One whole number that is not negative."""
     found = whole(key, value)
     if found < 0:
-        raise ValueError(f"{key} = {shown(value)}: must not be negative")
+        raise ValueError(f"{key} = {shown(found)}: must not be negative")
     if found > sys.maxsize:
-        raise ValueError(f"{key} = {shown(value)}: is too large, must be at most {sys.maxsize}")
+        raise ValueError(f"{key} = {shown(found)}: is too large, must be at most {sys.maxsize}")
     return found
 
 
 def counts(key: str, value: object) -> list[int]:
     """One whole number or several, as a list."""
     value = _unwrapped(value)
-    if is_list(value):
-        return [count(f"{key}[{i}]", each) for i, each in enumerate(value)]
-    return [count(key, value)]
+    if not is_list(value):
+        return [count(key, value)]
+    return [count(f"{key}[{i}]", each) for i, each in enumerate(items(key, value))]
 
 
 def flag(key: str, value: object) -> bool:
@@ -109,36 +149,110 @@ def flag(key: str, value: object) -> bool:
 
 def word(key: str, value: object, *options: str) -> str:
     """A piece of text; whether it is one of the options is left to who reads it."""
-    if isinstance(value, str):
+    if isinstance(value, str) and len(value) <= _SHOWN and value.isprintable():
         return value
     allowed = " or ".join(filter(None, (", ".join(options[:-1]), *options[-1:]))) or "text"
     raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
 
 
+def choice(key: str, value: object, options: Iterable[str]) -> str:
+    """One of several words, which the message names with the one that may have been meant."""
+    allowed = [*options]
+    if not isinstance(value, str) or value not in allowed:
+        near = suggestion(value, allowed) if isinstance(value, str) else ""
+        raise ValueError(f"{key} = {shown(value)}: must be one of {', '.join(allowed)}{near}")
+    return str(value)
+
+
+def text(key: str, value: object) -> str:
+    """A piece of text of any kind."""
+    if not isinstance(value, str):
+        raise ValueError(f"{key} = {shown(value)}: must be text")
+    return value
+
+
+def mapping(key: str, value: object, what: str = "a mapping") -> Mapping[Any, Any]:
+    """A table of values by name."""
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+    return value
+
+
+def file_path(key: str, value: object) -> Path:
+    """Where a file or a folder is."""
+    if not isinstance(value, str | os.PathLike):
+        raise TypeError(f"{key} = {shown(value)}: must be a path")
+    try:
+        path = Path(value)
+        if b"\0" in os.fsencode(path):
+            raise ValueError
+    except (TypeError, ValueError):  # a path of bytes, or characters that no file name has
+        raise ValueError(f"{key} = {shown(value)}: is not the name of a file") from None
+    return path
+
+
+def pair(key: str, value: object, what: str = "a pair") -> tuple[Any, Any]:
+    """Two values in an order."""
+    is_row = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    if not is_row or len(value) != 2:  # type: ignore[arg-type]
+        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+    return value[0], value[1]  # type: ignore[index]
+
+
 def pairs(key: str, value: object) -> list[tuple[object, object]]:
     """A list of pairs."""
-    if is_list(value):
-        found = []
-        for i, each in enumerate(value):
-            if not isinstance(each, list | tuple | np.ndarray) or len(each) != 2:
-                raise ValueError(f"{key}[{i}] = {shown(each)}: must be a pair")
-            found.append((each[0], each[1]))
-        return found
-    raise ValueError(f"{key} = {shown(value)}: must be a list of pairs")
+    return [
+        pair(f"{key}[{i}]", each) for i, each in enumerate(items(key, value, "a list of pairs"))
+    ]
 
 
 def array(key: str, value: object) -> NDArray[np.float64]:
     """Finite real numbers as an array of any shape."""
-    try:
-        values = np.asarray(value)
-    except ValueError:  # rows of different lengths
-        values = np.array(None)
+    values = as_array(key, value)
     if values.dtype.kind not in "iuf":
         raise ValueError(f"{key} = {shown(value)}: must be a number or an array of numbers")
     wrong = ~np.isfinite(values)
     if wrong.any():
         raise ValueError(f"{first_of(key, values, wrong)}: must be finite")
-    return values.astype(np.float64)
+    with np.errstate(over="ignore"):
+        found = values.astype(np.float64)
+    if values.dtype.itemsize > 8 and not np.isfinite(found).all():
+        raise ValueError(f"{first_of(key, values, ~np.isfinite(found))}: is too large")
+    return found
+
+
+def as_array(key: str, value: object) -> NDArray[Any]:
+    """An array of whatever it is, of objects where it is no array."""
+    _refuse_too_large(key, value)
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise ValueError(f"{key} = {shown(value)}: must have no masked values")
+    try:
+        return np.asarray(value)
+    except Exception:  # rows of different lengths, or an object that says that it is an array
+        return np.array(None)
+
+
+def _refuse_too_large(key: str, value: object) -> None:
+    """Refuses what an array cannot be made of in time, such as a range without end."""
+    size = value.size if isinstance(value, np.ndarray) else 0
+    if isinstance(value, Sized) and not isinstance(value, np.ndarray | str | bytes):
+        try:
+            size = len(value)
+            if size <= MOST_IN_ARRAY and isinstance(value, list | tuple):
+                size += sum(map(_size, value))
+        except Exception:  # refused as what it is, no array
+            size = 0
+    if size > MOST_IN_ARRAY:
+        raise ValueError(f"{key} = {shown(value)}: has more than {MOST_IN_ARRAY} values")
+
+
+def _size(value: object) -> int:
+    """How many values there are in a row."""
+    if isinstance(value, float | int):
+        return 0
+    if isinstance(value, np.ndarray):
+        return value.size
+    return len(value) if isinstance(value, Sized) else 0
 
 
 def first_of(key: str, values: NDArray[Any], wrong: NDArray[np.bool_]) -> str:
@@ -152,6 +266,21 @@ def is_list(value: object) -> TypeGuard[Iterable[object]]:
     """Whether it is of several values in an order."""
     text_or_unordered = (str, bytes, Mapping, AbstractSet)
     return isinstance(value, Iterable) and not isinstance(value, text_or_unordered)
+
+
+def items(key: str, value: object, what: str = "a list") -> list[Any]:
+    """The values of a list, or of what else is gone through in an order and has an end."""
+    if not is_list(value):
+        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+    try:
+        long = isinstance(value, Sized) and len(value) > MOST_LISTED
+        found = [] if long else [*islice(value, MOST_LISTED + 1)]
+    except Exception as error:
+        said = f"{key} = {shown(value)}: must be {what}; it cannot be gone through"
+        raise ValueError(f"{said}: {error}") from error
+    if long or len(found) > MOST_LISTED:
+        raise ValueError(f"{key} = {shown(value)}: must have at most {MOST_LISTED} values")
+    return found
 
 
 def _unwrapped(value: object) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import array, first_of, shown
+from spanwise._checks import array, as_array, first_of, shown
 from spanwise._traffictable import is_random
 from spanwise._wheels import Wheels
 from spanwise.crossing import passages_of
@@ -95,10 +95,7 @@ def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[
                 f"{len(events)} kinds of event it is, from 0"
             )
         return np.zeros(0, dtype=np.uint32)
-    try:
-        kinds = np.asarray(kind)
-    except ValueError:  # rows of different lengths
-        kinds = np.array(None)
+    kinds = as_array("kind", kind)
     if kinds.dtype.kind not in "iu" and kinds.size > 0:
         raise ValueError(f"kind = {shown(kind)}: must be whole numbers, one for each sample")
     if kinds.shape != (samples,):

@@ -111,7 +111,8 @@ def check_flexibility(
             f"influence deflection = {own[low]:.4g} m/N at its own section, x = {sections[low]:g} "
             "m: must be 0 or more; deflections are positive down: change the sign"
         )
-    modal = (shapes[at] ** 2 / (2.0 * np.pi * np.asarray(frequencies)) ** 2).sum(axis=1)
+    with np.errstate(all="ignore"):  # too much is too much
+        modal = (shapes[at] ** 2 / (2.0 * np.pi * np.asarray(frequencies)) ** 2).sum(axis=1)
     excess = modal - ((1.0 + _EXCESS) * own + nought)
     worst = int(np.argmax(excess))
     if excess[worst] > 0.0:

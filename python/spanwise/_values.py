@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import shown
+from spanwise._checks import choice
 from spanwise.run import QUANTITIES, Quantity, Run
 
 Array: TypeAlias = NDArray[np.float64]
@@ -33,9 +33,7 @@ def places(run: Run, quantity: Quantity) -> Array:
 
 def history(run: Run, quantity: Quantity) -> Array:
     """Shape (time, column); of a shear the left and the right of each section in turn."""
-    if quantity not in QUANTITIES:
-        raise ValueError(f"quantity = {shown(quantity)}: must be one of {', '.join(QUANTITIES)}")
-    values: Array = getattr(run, quantity)
+    values: Array = getattr(run, choice("quantity", quantity, QUANTITIES))
     return values.reshape(len(values), -1)
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
 from typing import Any, Final, TypeAlias, TypeVar
 
-from spanwise._checks import numbers, shown
-from spanwise._keys import Keys, suggestion
+from spanwise._checks import choice, numbers, shown
+from spanwise._keys import Keys
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 from spanwise.vehicles import PRESETS, AnyVehicle
@@ -150,11 +150,7 @@ def _body(table: Table, elsewhere: Home) -> Body:
 
 
 def _preset(table: Table, elsewhere: Home) -> AnyVehicle:
-    name = table["preset"]
-    if name not in [*PRESETS]:
-        hint = suggestion(name, PRESETS) if isinstance(name, str) else ""
-        raise ValueError(f"preset = {shown(name)}: must be one of {', '.join(PRESETS)}{hint}")
-    preset = PRESETS[name]
+    preset = PRESETS[choice("preset", table["preset"], PRESETS)]
     options = {key: table[key] for key in preset.options if key in table}
     vehicle = preset(**options)
     allowed = ["preset", *preset.options]

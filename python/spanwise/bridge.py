@@ -10,7 +10,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core, _given
-from spanwise._checks import array, count, counts, number, numbers, pairs, shown, word
+from spanwise._checks import (
+    array,
+    count,
+    counts,
+    flag,
+    items,
+    number,
+    numbers,
+    pair,
+    pairs,
+    shown,
+    word,
+)
 from spanwise.layout import (
     AlongBeam,
     AnySupport,
@@ -287,7 +299,10 @@ class Bridge:
             "supports": supports_of("supports", supports),
             "stations": at,
             "masses": numbers("masses", masses),
-            "redundants": [_redundant(i, each) for i, each in enumerate(redundants)],
+            "redundants": [
+                _redundant(i, each)
+                for i, each in enumerate(items("redundants", redundants, "a list of stations"))
+            ],
             "path": at if path is None else numbers("path", path),
             "flexibility": _given.matrix("flexibility", flexibility),
             "slopes": None if slopes is None else _given.matrix("slopes", slopes),
@@ -556,7 +571,9 @@ class Bridge:
         ndarray, shape (x, modes)
         """
         where = array("x", x).ravel()
-        *_, along_x = self._core.modes(_modes(count), where, bool(derivative), _left(side))
+        *_, along_x = self._core.modes(
+            _modes(count), where, flag("derivative", derivative), _left(side)
+        )
         assert along_x is not None
         return along_x
 
@@ -592,7 +609,7 @@ class Bridge:
             array("x", x).ravel(),
             numbers("loads", loads),
             word("structure", structure, *get_args(Structure)),
-            bool(derivative),
+            flag("derivative", derivative),
             _left(side),
         )
 
@@ -715,7 +732,7 @@ class Bridge:
             number("at", at),
             where.ravel(),
             word("structure", structure, *get_args(Structure)),
-            bool(derivative),
+            flag("derivative", derivative),
             _left(side),
         )
         return line.reshape(where.shape)
@@ -748,7 +765,7 @@ def _redundant(i: int, value: object) -> tuple[float, float]:
 
 
 def _left(side: object) -> bool:
-    if side not in get_args(Side):
+    if not isinstance(side, str) or side not in get_args(Side):
         raise ValueError(f"side = {shown(side)}: must be left or right")
     return side == "left"
 
@@ -758,6 +775,5 @@ def _modes(value: object) -> int:
 
 
 def _two_ends(ends: object) -> tuple[str, str]:
-    if isinstance(ends, list | tuple) and len(ends) == 2:
-        return word("ends[0]", ends[0]), word("ends[1]", ends[1])
-    raise ValueError(f"ends = {ends!r}: must be a pair, each pinned, clamped or free")
+    left, right = pair("ends", ends, "a pair, each pinned, clamped or free")
+    return word("ends[0]", left), word("ends[1]", right)

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from spanwise._casefile import CaseError, parse_toml, read_text
-from spanwise._checks import shown
+from spanwise._checks import file_path, items, mapping, shown
+from spanwise._checks import text as checks_text
 from spanwise._keys import Keys, suggestion
 from spanwise._traffictable import OWN, files_in, passage_of, road_in
 from spanwise._vehicletable import home as vehicle_home
@@ -44,6 +45,8 @@ TABLES: Final = {
     "road": "[road]",
     "crossing": "[crossing]",
 }
+#: Most tables and lists within each other.
+MAX_DEPTH: Final = 32
 #: A vehicle among several, and what of it, in a message about a crossing.
 VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
@@ -114,6 +117,23 @@ class Case:
     source: str = "case"
     files: tuple[Path, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.bridge, Bridge):
+            raise TypeError(f"bridge = {shown(self.bridge)}: must be a Bridge")
+        passages = items("passages", self.passages, "a list of Passage")
+        for i, each in enumerate(passages):
+            if not isinstance(each, Passage):
+                raise TypeError(f"passages[{i}] = {shown(each)}: must be a Passage")
+        if not passages:
+            raise ValueError("passages = []: must have at least one")
+        if self.road is not None and not isinstance(self.road, Road):
+            raise TypeError(f"road = {shown(self.road)}: must be a Road")
+        object.__setattr__(self, "passages", tuple(passages))
+        crossing = dict(mapping("crossing", self.crossing, "a mapping of arguments by name"))
+        CROSSING.check_known(crossing, _home)
+        object.__setattr__(self, "crossing", crossing)
+        checks_text("source", self.source)
+
     @classmethod
     def read(cls, path: str | Path) -> Case:
         """Read a case file.
@@ -125,7 +145,7 @@ class Case:
         CaseError
             A ValueError: if it is not a case file, or a value in it is not allowed.
         """
-        path = Path(path)
+        path = file_path("path", path)
         case = cls.parse(read_text(path), source=str(path), folder=path.parent)
         return replace(case, files=(path, *case.files))
 
@@ -149,7 +169,9 @@ class Case:
         CaseError
             A ValueError: if the text is not a case, or a value in it is not allowed.
         """
-        return cls._of(parse_toml(text, source), source, Path(folder))
+        checks_text("source", source)
+        tables = parse_toml(checks_text("text", text), source)
+        return cls._of(tables, source, file_path("folder", folder))
 
     @classmethod
     def from_dict(cls, tables: Table, source: str = "case", folder: str | Path = ".") -> Case:
@@ -169,7 +191,10 @@ class Case:
         CaseError
             A ValueError: if a table, key or value is not allowed.
         """
-        return cls._of(_with_infinity(tables), source, Path(folder))
+        checks_text("source", source)
+        with _errors_in(source):
+            plain = _with_infinity(mapping("tables", tables, "the tables of a case by name"))
+        return cls._of(plain, source, file_path("folder", folder))
 
     @classmethod
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
@@ -256,11 +281,16 @@ def _errors_in(place: str) -> Iterator[None]:
         raise CaseError(f"{place}: {error}") from error
 
 
-def _with_infinity(value: Any) -> Any:
+def _with_infinity(value: Any, name: str = "tables", depth: int = 0) -> Any:
+    """The tables with infinity in place of its name; `name` is that of the value."""
+    if isinstance(value, Mapping | list | tuple) and depth > MAX_DEPTH:
+        raise ValueError(f"{name} = {shown(value)}: has more than {MAX_DEPTH} levels")
     if isinstance(value, Mapping):
-        return {key: _with_infinity(each) for key, each in value.items()}
+        # Told by its table and key, however deep it goes on.
+        names = {k: f"{name}.{k}" if depth == 1 else str(k) if depth == 0 else name for k in value}
+        return {k: _with_infinity(each, names[k], depth + 1) for k, each in value.items()}
     if isinstance(value, list | tuple):
-        return [*map(_with_infinity, value)]
+        return [_with_infinity(each, name, depth + 1) for each in value]
     return math.inf if isinstance(value, str) and value == "inf" else value
 
 

@@ -138,7 +138,7 @@ def cross(
     .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973).
     """
     if not isinstance(bridge, Bridge):
-        raise TypeError(f"bridge = {bridge!r}: must be a Bridge")
+        raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     passages = passages_of(vehicle)
     surface = surface_of(road)
     driven = drive_of(drive)

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import array, number, numbers, shown
+from spanwise._checks import array, first_of, number, numbers, pair, shown
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -49,8 +49,8 @@ class Rayleigh:
         (f, z), (g, y) = (
             (number(f"{name} frequency", pair[0]), number(f"{name} ratio", pair[1]))
             for name, pair in (
-                ("first", _pair("first", first)),
-                ("second", _pair("second", second)),
+                ("first", pair("first", first, "a pair of frequency and ratio")),
+                ("second", pair("second", second, "a pair of frequency and ratio")),
             )
         )
         for name, frequency, ratio in (("first", f, z), ("second", g, y)):
@@ -73,8 +73,15 @@ class Rayleigh:
 
     def ratios(self, frequencies: ArrayLike) -> Array:
         """Ratios to critical at frequencies [Hz], of the same shape."""
-        omega = 2.0 * np.pi * array("frequencies", frequencies)
-        return 0.5 * (self.alpha / omega + self.beta * omega)
+        given = array("frequencies", frequencies)
+        if (wrong := ~(given > 0.0)).any():
+            raise ValueError(f"{first_of('frequencies', given, wrong)} Hz: must be greater than 0")
+        with np.errstate(over="ignore"):
+            omega = 2.0 * np.pi * given
+            found: Array = 0.5 * (self.alpha / omega + self.beta * omega)
+        if (wrong := ~np.isfinite(found)).any():
+            raise ValueError(f"{first_of('frequencies', given, wrong)} Hz: is too far from any")
+        return found
 
 
 #: Forms of the key ``rayleigh``.
@@ -88,9 +95,9 @@ Damping: TypeAlias = ArrayLike | Rayleigh | Mapping[str, Any]
 def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[float], Array | None]:
     """The ratios, or the matrix C; `frequencies` [Hz] are those of the included modes."""
     if isinstance(damping, Mapping):
-        if list(damping) != ["rayleigh"]:
+        if [*map(str, damping)] != ["rayleigh"]:
             raise ValueError(
-                f"damping = {shown(dict(damping))}: must be a number, a list or a matrix, or a "
+                f"damping = {shown(damping)}: must be a number, a list or a matrix, or a "
                 f"table with the key rayleigh, {FORMS}"
             )
         damping = _rayleigh(damping["rayleigh"])
@@ -105,7 +112,7 @@ def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[fl
         return ratios.tolist(), None
     try:
         dimensions = np.ndim(damping)  # type: ignore[arg-type]
-    except ValueError:  # rows of different lengths
+    except Exception:  # rows of different lengths, or an object that says that it is an array
         dimensions = 3
     if dimensions < 2:
         return numbers("damping", damping), None
@@ -149,14 +156,6 @@ def _rayleigh(value: object) -> Rayleigh:
     """From a pair or a table."""
     if isinstance(value, Mapping):
         if sorted(map(str, value)) != ["alpha", "beta"]:
-            raise ValueError(f"damping rayleigh = {shown(dict(value))}: must be {FORMS}")
+            raise ValueError(f"damping rayleigh = {shown(value)}: must be {FORMS}")
         return Rayleigh(**value)
-    if not isinstance(value, list | tuple | np.ndarray) or len(value) != 2:
-        raise ValueError(f"damping rayleigh = {shown(value)}: must be a pair, {FORMS}")
-    return Rayleigh(*value)
-
-
-def _pair(key: str, value: object) -> tuple[Any, Any]:
-    if not isinstance(value, list | tuple | np.ndarray) or len(value) != 2:
-        raise ValueError(f"{key} = {shown(value)}: must be a pair of frequency and ratio")
-    return value[0], value[1]
+    return Rayleigh(*pair("damping rayleigh", value, f"a pair, {FORMS}"))

@@ -10,7 +10,7 @@ from typing import Any, Final, TypeAlias, get_args
 from numpy.typing import ArrayLike
 
 from spanwise import _core
-from spanwise._checks import count, flag, number, shown
+from spanwise._checks import choice, count, flag, number, shown
 from spanwise._conditions import Conditions, Recovery
 from spanwise._events import (
     core_passage,
@@ -24,7 +24,6 @@ from spanwise._events import (
     speeds_of,
     speeds_told,
 )
-from spanwise._keys import suggestion
 from spanwise._plausible import doubt
 from spanwise._progress import Bar
 from spanwise._recipe import Recipe
@@ -182,7 +181,7 @@ def ensemble(
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
     if not isinstance(bridge, Bridge):
-        raise TypeError(f"bridge = {bridge!r}: must be a Bridge")
+        raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     events = events_of(vehicle)
     surface = surface_of(road)
     samples, seed, first = count("samples", samples), count("seed", seed), count("first", first)
@@ -229,9 +228,12 @@ def ensemble(
     looked_at = _quantities(bridge, quantities)
     simple = all(is_simple(event, driven) for event in events)
     column = speeds_by_kind(speeds, events, kinds, samples) if simple else speeds
-    listener = Bar(sys.stderr) if progress is True else progress or None
-    if listener is not None and not callable(listener):
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
+    if progress is True:
+        listener: Bar | Callable[[int, int], object] | None = Bar(sys.stderr)
+    else:
+        listener = progress or None
     try:
         core = _core.ensemble(
             bridge._core,
@@ -300,11 +302,7 @@ def _quantities(bridge: Bridge, given: object) -> list[Quantity]:
     if not isinstance(given, list | tuple) or not given:
         raise ValueError(f"quantities = {shown(given)}: must be a list of {', '.join(names)}")
     for i, each in enumerate(given):
-        if each not in names:
-            near = suggestion(each, names) if isinstance(each, str) else ""
-            raise ValueError(
-                f"quantities[{i}] = {shown(each)}: must be one of {', '.join(names)}{near}"
-            )
+        choice(f"quantities[{i}]", each, names)
         if each not in there:
             raise ValueError(
                 f"quantities[{i}] = {shown(each)}: this bridge was given without influence lines "

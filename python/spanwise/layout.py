@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
-from spanwise._checks import Numbers, count, number, numbers, shown
+from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
 from spanwise._keys import suggestion
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
@@ -104,13 +104,9 @@ def support(key: str, value: object) -> tuple[float, float, float]:
         value = Support(**springs)
     if isinstance(value, Support):
         return value.at, value.vertical, value.rotation
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise ValueError(
-            f"{key} = {shown(value)}: must be a pair of position and kind, "
-            "or a Support or table with at, vertical and rotation"
-        )
+    other = "or a Support or table with at, vertical and rotation"
+    at, kind = pair(key, value, f"a pair of position and kind, {other}")
     kinds = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
-    at, kind = value
     if not isinstance(kind, str) or kind not in kinds:
         raise ValueError(f"{key} = {shown(kind)}: must be pinned or clamped")
     return number(f"{key} position", at), *kinds[kind]
@@ -118,9 +114,8 @@ def support(key: str, value: object) -> tuple[float, float, float]:
 
 def supports(key: str, value: object) -> list[tuple[float, float, float]]:
     """Positions [m] and springs [N/m, N m/rad] of the supports."""
-    if isinstance(value, str | bytes | Mapping) or not hasattr(value, "__iter__"):
-        raise ValueError(f"{key} = {shown(value)}: must be a list of supports")
-    return [support(f"{key}[{i}]", each) for i, each in enumerate(value)]
+    given = items(key, value, "a list of supports")
+    return [support(f"{key}[{i}]", each) for i, each in enumerate(given)]
 
 
 def support_argument(one: Support) -> Any:
@@ -133,7 +128,7 @@ def support_argument(one: Support) -> Any:
 
 def _stiffness(key: str, value: object) -> float:
     """A number; infinity may be spelled out, as JSON has none."""
-    return math.inf if value == "inf" else number(key, value)
+    return math.inf if isinstance(value, str) and value == "inf" else number(key, value)
 
 
 def _check_keys(
@@ -149,6 +144,6 @@ def _check_keys(
     )
     for each in table:
         if each not in allowed:
-            raise ValueError(f"{wanted}; unknown key {each!r}{suggestion(str(each), allowed)}")
+            raise ValueError(f"{wanted}; unknown key {shown(each)}{suggestion(str(each), allowed)}")
     if missing := [each for each in required if each not in table]:
         raise ValueError(f"{wanted}; missing {', '.join(missing)}")

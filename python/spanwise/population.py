@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import is_list, shown, whole
+from spanwise._checks import choice, file_path, is_list, items, shown, whole
 from spanwise._conditions import masked
-from spanwise._keys import suggestion
 from spanwise._recipe import Recipe
 from spanwise.bridge import Bridge
 from spanwise.columns import Array, Moments, SampleExtremes, Sense, frozen
@@ -352,11 +351,7 @@ class Ensemble:
         ValueError
             If there are no such factors.
         """
-        if quantity not in FACTORS:
-            near = suggestion(str(quantity), FACTORS)
-            raise ValueError(
-                f"quantity = {shown(quantity)}: must be one of {', '.join(FACTORS)}{near}"
-            )
+        choice("quantity", quantity, FACTORS)
         name, sense = FACTORS[quantity]
         least = self._recipe.conditions.mask if mask is None else masked(mask)
         if name not in (*self.quantities, "axle_loads"):
@@ -405,7 +400,7 @@ class Ensemble:
         of_number = row - self.first
         there = 0 <= of_number < self.samples
         hint = f" (sample number {row} is row {of_number})" if there else ""
-        raise IndexError(f"row {row}: must be from 0 to below {self.samples}{hint}")
+        raise IndexError(f"row {shown(row)}: must be from 0 to below {self.samples}{hint}")
 
     def histories(self, quantity: History, samples: int | Sequence[int]) -> Array:
         """Histories of a response, by a crossing of its own for each of some samples.
@@ -432,12 +427,11 @@ class Ensemble:
         RuntimeError
             If one of them is one that failed.
         """
-        if quantity not in get_args(History):
-            raise ValueError(
-                f"quantity = {shown(quantity)}: must be one of {', '.join(get_args(History))}"
-            )
+        choice("quantity", quantity, get_args(History))
         if is_list(samples):
-            rows = [self._row(f"samples[{i}]", each) for i, each in enumerate(samples)]
+            rows = [
+                self._row(f"samples[{i}]", each) for i, each in enumerate(items("samples", samples))
+            ]
         elif isinstance(samples, Integral):
             rows = [self._row("samples", samples)]
         else:
@@ -496,7 +490,7 @@ class Ensemble:
         """
         from spanwise._ensemblefile import write_npz
 
-        write_npz(self, Path(path))
+        write_npz(self, file_path("path", path))
 
     @property
     def plot(self) -> EnsemblePlot:

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from spanwise._checks import file_path
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._extras import require
@@ -72,7 +73,7 @@ def write_json(run: Run, path: str | Path) -> None:
     OSError
         If the file cannot be written; then there is none, or the old one.
     """
-    write_files([(Path(path), [json_text(run).encode()])])
+    write_files([(file_path("path", path), [json_text(run).encode()])])
 
 
 def write_csv(run: Run, directory: str | Path) -> None:
@@ -88,7 +89,7 @@ def write_csv(run: Run, directory: str | Path) -> None:
     OSError
         If the folder or a file cannot be written; then no file has been changed.
     """
-    folder = Path(directory)
+    folder = file_path("directory", directory)
     files = [(folder / name, content) for name, content in csv_files(run)]
     write_files(files, folders=[folder])
 

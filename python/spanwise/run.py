@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import number
+from spanwise._checks import choice
+from spanwise._conditions import masked
 from spanwise.bridge import Bridge
 from spanwise.roads import Road
 from spanwise.table import ImpactFactors
@@ -472,6 +473,7 @@ class Run(Responses):
         quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
             The quantity.
         """
+        choice("quantity", quantity, QUANTITIES)
         columns = (Extremes._of(each) for each in self._core.envelope(quantity))
         where = {
             "reactions": self.supports,
@@ -503,7 +505,8 @@ class Run(Responses):
         ImpactFactors
             NaN where masked.
         """
-        masked_below = number("mask", self.settings["mask"] if mask is None else mask)
+        choice("ratio", ratio, get_args(Ratio))
+        masked_below = masked(self.settings["mask"] if mask is None else mask)
 
         def factors(quantity: Quantity, sense: str) -> Array:
             return self._core.impact_factors(quantity, sense, ratio, masked_below)

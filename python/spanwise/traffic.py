@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, ClassVar, Final, Literal, TypeAlias, get_args
+from dataclasses import asdict, dataclass, fields
+from typing import Any, ClassVar, Final, Literal, TypeAlias, cast, get_args
 
-from spanwise._checks import finite, not_negative, number, numbers, positive, shown, word
-from spanwise._keys import Keys, suggestion
+from spanwise._checks import (
+    choice,
+    finite,
+    items,
+    not_negative,
+    numbers,
+    positive,
+    shown,
+    whole_from,
+    word,
+)
+from spanwise._keys import Keys
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
 from spanwise.vehicles import AnyVehicle
 
 Direction: TypeAlias = Literal["right", "left"]
 Plain: TypeAlias = Literal["constant-speed", "constant-traction"]
+
+#: Highest number of a lane.
+MOST_LANE: Final = 2**31 - 1
 
 #: What the core takes for a drive: its name and numbers.
 CoreDrive: TypeAlias = tuple[str, list[float], list[float]]
@@ -121,7 +134,8 @@ class Braking:
 
     def __post_init__(self) -> None:
         checks = {"deceleration": positive, "start": finite, "ramp": not_negative}
-        for key, value in asdict(self).items():
+        for each in fields(self):
+            key, value = each.name, getattr(self, each.name)
             check = checks.get(key, positive)
             object.__setattr__(self, key, check(f"braking {key}", value))
 
@@ -140,10 +154,7 @@ def drive_of(value: object) -> Drive:
     if isinstance(value, Acceleration | Speeds | Braking):
         return value
     if isinstance(value, Mapping):
-        kind = value.get("kind")
-        if kind not in [*KINDS]:
-            near = suggestion(kind, KINDS) if isinstance(kind, str) else ""
-            raise ValueError(f"drive kind = {shown(kind)}: must be one of {', '.join(KINDS)}{near}")
+        kind = choice("drive kind", value.get("kind"), KINDS)
         table = {key: each for key, each in value.items() if key != "kind"}
         keys = Keys.of(KINDS[kind])
         try:
@@ -155,7 +166,7 @@ def drive_of(value: object) -> Drive:
     try:
         plain = word("drive", value, *get_args(Plain))
         if plain not in get_args(Plain):
-            raise ValueError(f'drive = "{plain}": must be constant-speed or constant-traction')
+            raise ValueError(f"drive = {shown(plain)}: must be constant-speed or constant-traction")
     except ValueError as error:
         raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
     return plain  # type: ignore[return-value]
@@ -218,11 +229,10 @@ class Passage:
             raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
         object.__setattr__(self, "entry", not_negative("entry", self.entry))
         if word("direction", self.direction, *get_args(Direction)) not in get_args(Direction):
-            raise ValueError(f'direction = "{self.direction}": must be right or left')
-        if self.lane is not None and (
-            isinstance(self.lane, bool) or not isinstance(self.lane, int)
-        ):
-            raise ValueError(f"lane = {shown(self.lane)}: must be a whole number")
+            raise ValueError(f"direction = {shown(self.direction)}: must be right or left")
+        if self.lane is not None:
+            lane = whole_from("lane", self.lane, -MOST_LANE, MOST_LANE)
+            object.__setattr__(self, "lane", lane)
 
     @property
     def lane_number(self) -> int:
@@ -265,6 +275,7 @@ def convoy(
     -------
     list of Passage
     """
+    vehicles = items("vehicles", vehicles, "a list of vehicles")
     gaps = numbers("headway", headway)
     if len(gaps) == 1:
         gaps *= max(len(vehicles) - 1, 1)
@@ -273,10 +284,16 @@ def convoy(
             f"headway = {shown(headway)}: give one, or one for each of the {len(vehicles) - 1} gaps"
         )
     for i, gap in enumerate(gaps):
-        if not gap > 0.0:
-            raise ValueError(f"headway[{i}] = {gap:g} s: must be greater than 0")
-    passages, at = [], number("entry", entry)
-    for vehicle, gap in zip(vehicles, [0.0, *gaps], strict=False):
+        if not 0.0 < gap < float("inf"):
+            raise ValueError(f"headway[{i}] = {gap:g} s: must be finite and greater than 0")
+    passages, at = [], not_negative("entry", entry)
+    for i, (vehicle, gap) in enumerate(zip(vehicles, [0.0, *gaps], strict=False)):
+        if not isinstance(vehicle, Wheels):
+            raise TypeError(f"vehicles[{i}] = {shown(vehicle)}: must be a Vehicle or a train")
         at += gap
-        passages.append(Passage(vehicle=vehicle, direction=direction, entry=at, **common))
+        if at == float("inf"):
+            raise ValueError(f"headway[{i - 1}] = {gap:g} s: is too large")
+        passages.append(
+            Passage(vehicle=cast("AnyVehicle", vehicle), direction=direction, entry=at, **common)
+        )
     return passages

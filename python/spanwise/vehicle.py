@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from spanwise import _core
@@ -261,7 +262,7 @@ class Vehicle(Wheels):
     def _check_alone(self, axles: tuple[Axle, ...]) -> None:
         """Refuses what describes one body beside several."""
         given: dict[str, Any] = {"mass": self.mass, "pitch_inertia": self.pitch_inertia}
-        if self.cg_height != 0.0:
+        if not _is(self.cg_height, 0.0):
             given["cg_height"] = self.cg_height
         if self.axles and tuple(self.axles) != axles:
             given["axles"] = self.axles
@@ -321,8 +322,13 @@ def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:
 def _pitches(bodies: Sequence[Body], b: int) -> bool:
     """Whether anything acts on a body away from its centre of mass."""
     own = [*(axle.position for axle in bodies[b].axles), *(end.own for end in bodies[b].joints)]
-    there = [end.at for body in bodies for end in body.joints if end.to == b]
-    return any(place != 0.0 for place in (*own, *there))
+    there = [end.at for body in bodies for end in body.joints if _is(end.to, b)]
+    return any(not _is(place, 0.0) for place in (*own, *there))
+
+
+def _is(given: object, value: float) -> bool:
+    """Whether it is this number; what is none is refused later, by name."""
+    return isinstance(given, Real) and bool(given == value)
 
 
 def _body(body: Body, prefix: str, pitches: bool) -> _core._Body:

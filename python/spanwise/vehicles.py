@@ -11,7 +11,7 @@ from functools import partial
 from inspect import signature
 from typing import Any, Final, TypeAlias
 
-from spanwise._checks import count, number, numbers, shown
+from spanwise._checks import count, not_negative, number, numbers, shown
 from spanwise._wheels import GRAVITY
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Vehicle
@@ -176,7 +176,7 @@ def articulated_5_axle(
         pitch_inertia=16_302.0,
         axles=axles[2:],
         cg_height=rear,
-        hinge=Hinge(to=0, at=-2.15, own=6.15, height=hinge_height),
+        hinge=Hinge(to=0, at=-2.15, own=6.15, height=not_negative("hinge_height", hinge_height)),
     )
     return Vehicle(bodies=[tractor, trailer])
 
@@ -225,7 +225,7 @@ def hs20_44(*, cg_heights: Sequence[float] = (0.0, 0.0), hinge_height: float = 0
         pitch_inertia=33_153.0,
         axles=axles[2:],
         cg_height=rear,
-        hinge=Hinge(to=0, at=-2.215, own=2.338, height=hinge_height),
+        hinge=Hinge(to=0, at=-2.215, own=2.338, height=not_negative("hinge_height", hinge_height)),
     )
     return Vehicle(bodies=[tractor, trailer])
 
@@ -328,7 +328,8 @@ def _heights(values: Sequence[float]) -> tuple[float, float]:
         raise ValueError(
             f"cg_heights = {shown(values)}: give two, of the tractor and of the semi-trailer"
         )
-    return heights[0], heights[1]
+    front, rear = (not_negative(f"cg_heights[{i}]", each) for i, each in enumerate(heights))
+    return front, rear
 
 
 def _within(key: str, value: float, low: float, high: float) -> float:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._checks import choice, finite
 from spanwise._checks import count as whole_number
 from spanwise.plotting import symbols
 from spanwise.plotting.style import (
@@ -130,7 +131,10 @@ class BridgePlot:
         matplotlib.figure.Figure
         """
         bridge = self._bridge
-        modes = bridge.modes(whole_number("count", count))
+        count = whole_number("count", count)
+        if count == 0:
+            raise ValueError("count = 0: must be 1 or more")
+        modes = bridge.modes(count)
         x = np.linspace(0.0, bridge.length, 401)
         shapes = bridge.mode_shapes(count, x)
         figure = figure_for(figure, 0.65 + 0.85 * count)
@@ -185,6 +189,8 @@ class BridgePlot:
         matplotlib.figure.Figure
         """
         bridge = self._bridge
+        at = finite("at", at)
+        choice("quantity", quantity, INFLUENCES)
         x = _with_both_sides(np.linspace(0.0, bridge.length, 401), at)
         line = bridge.influence_line(quantity, at, x, structure)
         measure = INFLUENCES[quantity]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from spanwise._checks import choice, counts, mapping, numbers, shown, text
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
 from spanwise.plotting.style import (
     LINES,
@@ -19,12 +20,11 @@ from spanwise.plotting.style import (
     whole,
     zero_line,
 )
+from spanwise.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
-
-    from spanwise.run import Run
 
 Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear"]
 
@@ -48,15 +48,19 @@ def compare_impact_factors(
     -------
     matplotlib.figure.Figure
     """
+    for name, each in mapping("runs", runs, "runs by name").items():
+        if not isinstance(each, Run):
+            raise TypeError(f"runs[{shown(name)}] = {shown(each)}: must be a Run")
     if not runs:
         raise ValueError("runs: give at least one run")
-    if factor not in FACTORS:
-        raise ValueError(f"factor = {factor!r}: must be one of {', '.join(FACTORS)}")
+    choice("factor", factor, FACTORS)
     ax = axes_for(ax)
     zero_line(ax, at=1.0)
     for i, (name, run) in enumerate(runs.items()):
         values = getattr(run.impact_factors, factor)
-        plot_masked(ax, run.impact_factors.sections, values, label=name, **LINES[i % len(LINES)])
+        plot_masked(
+            ax, run.impact_factors.sections, values, label=str(name), **LINES[i % len(LINES)]
+        )
     first = next(iter(runs.values()))
     along(ax, first.bridge, hinges=False)
     ax.set_xlabel(f"{ax.get_xlabel()}\n{mask_note(first.impact_factors.mask)}")
@@ -91,12 +95,17 @@ def compare_convergence(
     -------
     matplotlib.figure.Figure
     """
+    included = counts("modes", modes)
+    if not included:
+        raise ValueError("modes = []: give at least one")
+    curves = _curves(errors, len(included))
+    text("reference", reference)
     figure = figure_for(figure, 2.9)
-    panels = figure.subplots(1, len(errors), sharex=True, sharey=True, squeeze=False)[0]
-    for ax, (quantity, by_method) in zip(panels, errors.items(), strict=True):
+    panels = figure.subplots(1, len(curves), sharex=True, sharey=True, squeeze=False)[0]
+    for ax, (quantity, by_method) in zip(panels, curves.items(), strict=True):
         for i, (method, error) in enumerate(by_method.items()):
             ax.semilogy(
-                modes,
+                included,
                 [each if each > 0.0 else np.nan for each in error],
                 marker=MARKERS[i % len(MARKERS)],
                 markersize=3.5,
@@ -107,7 +116,7 @@ def compare_convergence(
         ax.set_title(quantity.capitalize())
         ax.set_xlabel("Modes included [-]")
         ax.locator_params(axis="x", integer=True)
-        ax.set_xlim(min(modes) - 0.5, max(modes) + 0.5)
+        ax.set_xlim(min(included) - 0.5, max(included) + 0.5)
         ax.grid(axis="y", color="#e5e5e5", linewidth=0.6)
         ax.set_axisbelow(True)
     panels[0].set_ylabel("Relative error\nof the extremes [-]")
@@ -116,3 +125,23 @@ def compare_convergence(
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper left", ncols=len(labels))
     return whole(figure)
+
+
+def _curves(errors: object, points: int) -> dict[str, dict[str, list[float]]]:
+    """The errors by quantity and by method, as many as there are points."""
+    found: dict[str, dict[str, list[float]]] = {}
+    for quantity, by_method in mapping("errors", errors, "errors by quantity").items():
+        key = f"errors[{shown(quantity)}]"
+        own = mapping(key, by_method, "errors by method")
+        found[str(quantity)] = {
+            str(method): numbers(f"{key}[{shown(method)}]", error) for method, error in own.items()
+        }
+        for method, error in found[str(quantity)].items():
+            if len(error) != points:
+                raise ValueError(
+                    f"{key}[{method!r}] = {len(error)} values: must be one for each of the "
+                    f"{points} numbers of modes"
+                )
+    if not any(found.values()):
+        raise ValueError(f"errors = {shown(errors)}: give at least one quantity and method")
+    return found

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import number
+from spanwise._checks import choice, finite
 from spanwise._values import axle_names
 from spanwise.plotting.envelope import BY_SECTION, envelope_of
 from spanwise.plotting.style import LIFTED, metres
@@ -26,13 +26,14 @@ def column(
 ) -> tuple[int, str, Side]:
     """Which column of the histories is asked for, in numbers and in words."""
     envelope = envelope_of(run, quantity)
-    if side not in ("left", "right", None):
-        raise ValueError(f"side = {side!r}: must be left or right")
+    if side is not None:
+        choice("side", side, get_args(Side))
     if at is None:
         largest = np.maximum(np.abs(envelope.static_max.value), np.abs(envelope.static_min.value))
         index = int(largest.argmax())
     else:
-        index = int(np.abs(envelope.x - number("at", at)).argmin())
+        at = finite("at", at)
+        index = int(np.abs(envelope.x - at).argmin())
         nearest = envelope.x[index]
         if not abs(nearest - at) <= 1e-6 * run.bridge.length:
             hint = "; cross(..., sections=[...]) chooses others" if quantity in BY_SECTION else ""

@@ -161,7 +161,7 @@ class RoadPlot:
             first, last = 0.0, period if np.isfinite(period) else SHOWN
         first = first if start is None else number("start", start)
         last = last if end is None else number("end", end)
-        if not first < last < np.inf:
+        if not -np.inf < first < last < np.inf:
             raise ValueError(
                 f"end = {last:g} m: must be finite and greater than start, {first:g} m"
             )

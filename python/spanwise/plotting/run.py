@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import count, number
+from spanwise._checks import count, finite
 from spanwise.plotting.bridge import draw_bridge
 from spanwise.plotting.envelope import BY_SECTION, draw_bars, draw_curves
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
@@ -42,6 +42,9 @@ if TYPE_CHECKING:
 
 Array: TypeAlias = NDArray[np.float64]
 
+
+#: Farthest from the bridge that a vehicle is drawn [m].
+FARTHEST: Final = 1e6
 
 #: Of the heights of vehicles on a bridge.
 SCALE: Final = 0.55
@@ -79,13 +82,13 @@ class RunPlot:
         run = self._run
         if front_axle is not None and len(run.passages) > 1:
             raise ValueError(f"front_axle = {front_axle!r}: of several vehicles give the time")
-        instant = _worst_time(run) if time is None else number("time", time)
+        instant = _worst_time(run) if time is None else finite("time", time)
         stands = [
             np.array([np.interp(instant, run.time, x) for x in motion.axle_positions.T])
             for motion in run.vehicles
         ]
         if front_axle is not None:
-            stands[0] += number("front_axle", front_axle) - stands[0][0]
+            stands[0] += _seen("front_axle", front_axle) - stands[0][0]
         drawn = _drawn(run, stands)
         above = max(70.0, *(SCALE * top(each.vehicle) + 13.0 for each in drawn))
         height = 2.1 + (above - 70.0) / 72.0
@@ -310,6 +313,14 @@ class RunPlot:
         above.set_xlabel(f"{above.get_xlabel()}; the bridge is grey")
         run.road.plot.psd(ax=below)
         return whole(figure)
+
+
+def _seen(key: str, value: object) -> float:
+    """A place that a drawing can show [m]."""
+    place = finite(key, value)
+    if abs(place) > FARTHEST:
+        raise ValueError(f"{key} = {place:g} m: is too far from the bridge")
+    return place
 
 
 @dataclass(frozen=True)

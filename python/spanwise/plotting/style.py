@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
+from spanwise._checks import choice, shown
 from spanwise._extras import require
 
 if TYPE_CHECKING:
@@ -100,9 +101,7 @@ MEASURES: Final[dict[str, Measure]] = {
 
 def measure_of(quantity: str) -> Measure:
     """How a quantity of a run is written on an axis."""
-    if quantity in MEASURES:
-        return MEASURES[quantity]
-    raise ValueError(f"quantity = {quantity!r}: must be one of {', '.join(MEASURES)}")
+    return MEASURES[choice("quantity", quantity, MEASURES)]
 
 
 def styled(draw: Callable[P, T]) -> Callable[P, T]:
@@ -126,12 +125,24 @@ def new_figure(height: float) -> Figure:
 
 def axes_for(ax: Axes | None, height: float = HEIGHT) -> Axes:
     """The axes given, or the only ones of a new figure of this height [in]."""
-    return new_figure(height).subplots() if ax is None else ax
+    if ax is None:
+        return new_figure(height).subplots()
+    from matplotlib.axes import Axes
+
+    if not isinstance(ax, Axes):
+        raise TypeError(f"ax = {shown(ax)}: must be Axes of matplotlib")
+    return ax
 
 
 def figure_for(figure: Figure | SubFigure | None, height: float) -> Figure | SubFigure:
     """The figure given, or a new one of this height [in]."""
-    return new_figure(height) if figure is None else figure
+    if figure is None:
+        return new_figure(height)
+    from matplotlib.figure import FigureBase
+
+    if not isinstance(figure, FigureBase):
+        raise TypeError(f"figure = {shown(figure)}: must be a Figure or SubFigure of matplotlib")
+    return figure
 
 
 def whole(part: Axes | Figure | SubFigure) -> Figure:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise.plotting import symbols
-from spanwise.plotting.style import GREY, PALE, metres, new_figure, styled, whole
+from spanwise.plotting.style import GREY, PALE, axes_for, metres, new_figure, styled, whole
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 
@@ -61,6 +61,7 @@ class VehiclePlot:
             figure = new_figure(drawing + table)
             ax, below = figure.subplots(2, 1, height_ratios=[drawing, table])
             _write_values(below, columns, notes)
+        ax = axes_for(ax)
         _draw_model(ax, self._vehicle)
         return whole(ax)
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
-from numbers import Real
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import array, number, shown
+from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise.roads import roughness
 
@@ -45,6 +44,9 @@ class Road:
     #: Names of the values that are in proportion to the elevation.
     _heights: ClassVar[tuple[str, ...]] = ()
 
+    #: NumPy leaves products to the road, and does not make an array of it.
+    __array_ufunc__: ClassVar[None] = None
+
     if TYPE_CHECKING:
 
         @property
@@ -74,16 +76,20 @@ class Road:
 
     def __radd__(self, other: object) -> Road:
         """The road itself on 0, with which ``sum`` begins."""
-        return total([self]) if other == 0 else NotImplemented
+        return total([self]) if isinstance(other, int) and other == 0 else NotImplemented
 
     def __mul__(self, factor: object) -> Road:
         """The road with elevations so many times as high; the factor is not negative."""
-        if isinstance(factor, bool | Road) or not isinstance(factor, Real):
+        if isinstance(factor, Road):
             return NotImplemented
-        times = number("factor", factor)
-        if not 0.0 <= times < np.inf:
-            raise ValueError(f"factor = {times:g}: must be finite and 0 or more")
-        return self._times(times) if times > 0.0 else Smooth()
+        times = not_negative("factor", factor)
+        try:
+            return self._times(times) if times > 0.0 else Smooth()
+        except (ValueError, OverflowError):
+            # Elevations that overflow, in the words of what they are made of.
+            raise ValueError(
+                f"factor = {times:g}: is too large or too small for this road"
+            ) from None
 
     __rmul__ = __mul__
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import flag, number, numbers, pairs, shown, word
+from spanwise._checks import as_array, flag, number, numbers, pairs, shown, word
 from spanwise._keys import suggestion
 from spanwise._warnings import PlausibilityWarning
 from spanwise.roads._doubts import doubts
@@ -191,12 +191,11 @@ class Profile(Road):
 
 def _column(key: str, value: ArrayLike) -> Array:
     """Numbers in a row that cannot be changed; whether they are finite is checked one by one."""
-    try:
-        values = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{key} = {shown(value)}: must be a list of numbers") from None
-    if values.ndim != 1:
+    given = as_array(key, value)
+    if given.dtype.kind not in "iuf" or given.ndim != 1:
         raise ValueError(f"{key} = {shown(value)}: must be a list of numbers")
+    with np.errstate(over="ignore"):
+        values = np.array(given, dtype=np.float64)
     values.setflags(write=False)
     return values
 

@@ -7,8 +7,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 from typing import Any, ClassVar, Final
 
 from spanwise import _core
-from spanwise._checks import count, number, numbers, shown, word
-from spanwise._keys import suggestion
+from spanwise._checks import choice, count, number, numbers, positive, shown
 from spanwise.roads.base import CONTACT_PATCH, Road
 from spanwise.roads.roughness import CLASSES
 
@@ -112,16 +111,13 @@ class ISO8608(Road):
             if given is None:
                 raise ValueError("class, G: give one of the two")
             return given
-        letter = word("class", self.road_class, *CLASSES)
-        if letter not in CLASSES:
-            allowed = f"must be one of {', '.join(CLASSES)}{suggestion(letter, CLASSES)}"
-            raise ValueError(f"class = {shown(letter)}: {allowed}")
+        letter = choice("class", self.road_class, CLASSES)
         if given is not None and given != CLASSES[letter]:
             raise ValueError(f"G = {shown(given)}: not used with class = {shown(letter)}")
         return CLASSES[letter]
 
     def _times(self, factor: float) -> Road:
-        return replace(self, road_class=None, G=factor**2 * self.G)
+        return replace(self, road_class=None, G=factor * factor * self.G)
 
     @property
     def arguments(self) -> dict[str, Any]:
@@ -156,11 +152,7 @@ def bridge_study(condition: str, **options: Any) -> ISO8608:
     The values used by D. Huang, T.-L. Wang and co-workers in the 1990s, here as recalled from the
     literature and not read at the source.
     """
-    name = word("condition", condition, *BRIDGE_STUDY)
-    if name not in BRIDGE_STUDY:
-        allowed = f"must be one of {', '.join(BRIDGE_STUDY)}{suggestion(name, BRIDGE_STUDY)}"
-        raise ValueError(f"condition = {shown(name)}: {allowed}")
-    return ISO8608(G=BRIDGE_STUDY[name], **options)
+    return ISO8608(G=BRIDGE_STUDY[choice("condition", condition, BRIDGE_STUDY)], **options)
 
 
 def from_iri(iri: float, **options: Any) -> ISO8608:
@@ -189,7 +181,11 @@ def from_iri(iri: float, **options: Any) -> ISO8608:
         raise ValueError(f"iri = {shown(iri)}: must be finite and greater than 0")
     if "waviness" in options:
         raise ValueError(f"waviness = {shown(options['waviness'])}: not used with iri, it is 2")
-    return ISO8608(G=(value / IRI_FACTOR) ** 2 * 1e-6, **options)
+    try:
+        roughness = positive("iri", (value / IRI_FACTOR) ** 2 * 1e-6)
+    except (ValueError, OverflowError):
+        raise ValueError(f"iri = {shown(iri)}: is of no road") from None
+    return ISO8608(G=roughness, **options)
 
 
 def _optional(key: str, value: object) -> float | None:
