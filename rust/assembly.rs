@@ -132,6 +132,57 @@ impl ContactPoint {
     }
 }
 
+/// Blames the value that is farthest from what vehicles have, if it is so far that nothing can be told of their motion: a
+/// body of 1e-300 kg is to be named, not the axles that seem to let it pitch.
+fn out_of_proportion(bodies: &[Body]) -> Option<Error> {
+    /// What vehicles have, in SI units, by the name of the value.
+    const USUAL: [(&str, f64); 6] = [
+        ("mass", 1e4),
+        ("pitch_inertia", 1e5),
+        ("stiffness", 1e6),
+        ("tyre_stiffness", 1e6),
+        ("suspension_stiffness", 1e6),
+        ("position", 1.0),
+    ];
+    /// By how many powers of ten a value may differ from them.
+    const FAR: f64 = 9.0;
+    let decades = |name: &str, value: f64| {
+        let usual = USUAL.iter().find(|(each, _)| *each == name).map_or(1.0, |each| each.1);
+        if value == 0.0 { 0.0 } else { (value.abs() / usual).log10().abs() }
+    };
+    let mut found: Option<(f64, String, f64)> = None;
+    let mut look = |place: String, name: &str, value: f64| {
+        let far = decades(name, value);
+        if far > found.as_ref().map_or(FAR, |each| each.0) {
+            found = Some((far, format!("{place}{name}"), value));
+        }
+    };
+    for (b, body) in bodies.iter().enumerate() {
+        let here = prefix(bodies, b);
+        look(if bodies.len() == 1 { "vehicle ".to_string() } else { here.clone() }, "mass", body.mass);
+        look(here.clone(), "pitch_inertia", body.pitch_inertia);
+        for (i, axle) in body.axles.iter().enumerate() {
+            let place = format!("{here}axles[{i}].");
+            look(place.clone(), "position", axle.position);
+            look(place.clone(), "mass", axle.mass);
+            look(place.clone(), "tyre_stiffness", axle.tyre_stiffness);
+            look(place, "suspension_stiffness", axle.suspension_stiffness);
+        }
+        let mut springs = 0;
+        for coupling in &body.couplings {
+            match coupling {
+                Coupling::Spring { stiffness, .. } => {
+                    look(format!("{here}springs[{springs}]."), "stiffness", *stiffness);
+                    springs += 1;
+                }
+                Coupling::Hinge { .. } => {}
+            }
+        }
+    }
+    let (_, key, value) = found?;
+    Some(Error::input(key, format!("{value:e}"), "is out of all proportion to the rest of the vehicle"))
+}
+
 impl ContactLaw {
     /// Stiffness of the tyre, if there is one [N/m].
     pub fn tyre_stiffness(&self) -> f64 {
@@ -416,6 +467,9 @@ impl Assembly {
             let sunk = sunk.as_ref().map_or(f64::NAN, |q| contact.row.dot(q));
             contact.share = contact.law.stiffness(Suspension::Sliding) * sunk;
             if !(contact.share.is_finite() && contact.share > 0.0) {
+                if let Some(error) = out_of_proportion(bodies) {
+                    return Err(error);
+                }
                 return Err(Error::input(
                     format!("{}axles[{i}].position", prefix(bodies, b)),
                     format!("{} m", bodies[b].axles[i].position),
@@ -435,6 +489,9 @@ impl Assembly {
         let held = frequencies[0].powi(2) > FREE * frequencies[frequencies.len() - 1].powi(2);
         if held || frequencies[0].is_nan() {
             return Ok(()); // what is not a number is refused with the loads
+        }
+        if let Some(error) = out_of_proportion(bodies) {
+            return Err(error);
         }
         let motion = shapes.column(0);
         let energy = |b: usize| {

@@ -12,7 +12,7 @@ use crate::modal::ModalDamping;
 use crate::modes::Modes;
 use crate::path::{Free, Ground, ModeShapes, Prescribed};
 use crate::settings::Settings;
-use crate::steps::Steps;
+use crate::steps::{Steps, narrowest_panel};
 use crate::vehicle::{Suspension, Vehicle};
 
 /// Most axles of all vehicles together: each presses on each other through the bridge.
@@ -44,12 +44,12 @@ impl ModalBridge {
         points.extend(bridge.stations().iter().map(|s| s.at));
         points.sort_by(f64::total_cmp);
         let near = crate::bridge::COINCIDENT * bridge.length();
-        let widths = points.windows(2).map(|p| p[1] - p[0]).filter(|&w| w > near);
+        let narrowest = narrowest_panel(&points, bridge.span_bounds(), near);
         Ok(ModalBridge {
             omega: modes.omega.clone(),
             shapes: ModeShapes::new(flexibility.mesh(), lines),
             damping: damping.modal(modes)?,
-            narrowest_panel: widths.fold(bridge.length(), f64::min),
+            narrowest_panel: narrowest.min(bridge.length()),
         })
     }
 

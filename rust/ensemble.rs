@@ -136,6 +136,14 @@ impl Study {
                 let allowed = format!("must be less than the length of the bridge, {length} m");
                 Err(Error::input("advance", format!("{advance} m"), allowed))
             }
+            Some(advance) if self.shares && (length + self.vehicle(kind).wheelbase()) / advance > MAX_STEPS as f64 => {
+                let allowed = format!("the crossing would take more than {MAX_STEPS} steps");
+                Err(Error::input("advance", format!("{advance:e} m"), allowed))
+            }
+            _ if self.shares && self.plan(kind).0 > MAX_STEPS => {
+                let allowed = format!("the crossing would take more than {MAX_STEPS} steps");
+                Err(Error::input("approach", format!("{:e} m", self.settings.approach), allowed))
+            }
             _ => Ok(()),
         }
     }
@@ -281,9 +289,19 @@ impl Study {
             }
             let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + self.settings.tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
-                let allowed =
-                    format!("a crossing at this speed would take more than {MAX_STEPS} steps, or too short ones");
-                return Err(Error::input(format!("speed[{sample}]"), format!("{speed} m/s"), allowed));
+                let usual = way > Steps::resolving(fastest).min(limit) * speed;
+                let (key, value) = match self.settings.step {
+                    _ if self.settings.tail * speed / way > 0.5 * count => {
+                        ("tail".to_string(), format!("{} s", self.settings.tail))
+                    }
+                    Some(step) if !usual => ("step".to_string(), format!("{step} s")),
+                    _ => match samples.farthest(sample) {
+                        Some((name, factor)) => (format!("factors['{name}']"), factor.to_string()),
+                        None => (format!("speed[{sample}]"), format!("{speed} m/s")),
+                    },
+                };
+                let allowed = format!("sample {sample} would take more than {MAX_STEPS} steps, or too short ones");
+                return Err(Error::input(key, value, allowed));
             }
             Ok((kind, halvings))
         };

@@ -127,9 +127,11 @@ impl Error {
     }
 }
 
-/// The text with numbers that bear the rounding of their last digits rounded to twelve: 5.1, not 5.100000000000001.
+/// The text with numbers that bear the rounding of their last digits rounded to twelve: 5.1, not 5.100000000000001; and those
+/// of hundreds of digits with a power of ten.
 fn tidy(text: &str) -> String {
     const TOO_MANY: usize = 15;
+    const TOO_LONG: usize = 24;
     let is_part = |c: char| c.is_ascii_digit() || c == '.';
     let mut tidied = String::with_capacity(text.len());
     let mut rest = text;
@@ -139,12 +141,18 @@ fn tidy(text: &str) -> String {
         tidied.push_str(&rest[..start]);
         let digits = number.trim_start_matches(['0', '.']).len();
         match number.parse::<f64>().and_then(|value| format!("{value:.11e}").parse::<f64>()) {
+            Ok(_) if number.len() > TOO_LONG => tidied.push_str(&scientific(number)),
             Ok(value) if number.contains('.') && digits > TOO_MANY => tidied.push_str(&value.to_string()),
             _ => tidied.push_str(number),
         }
         rest = &rest[start + number.len()..];
     }
     tidied + rest
+}
+
+/// A number with a power of ten, as it was written where it is none.
+fn scientific(number: &str) -> String {
+    number.parse::<f64>().map_or_else(|_| number.to_string(), |value| format!("{value:e}"))
 }
 
 /// `value`, if it is finite.
@@ -178,6 +186,8 @@ mod tests {
     fn numbers_lose_their_rounding_only() {
         let text = "5.100000000000001 m, x[12] = -0.30000000000000004 m.";
         assert_eq!(tidy(text), "5.1 m, x[12] = -0.3 m.");
+        assert_eq!(tidy(&format!("{} m", 1e300)), "1e300 m");
+        assert_eq!(tidy(&format!("{} m", 5e-324)), "5e-324 m");
         for same in ["", "1.25", "1.0000000000001 m", "100000000000000000000", "to 0.1 (0.000001 µm) 3", "1e-300."] {
             assert_eq!(tidy(same), same);
         }

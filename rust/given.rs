@@ -19,6 +19,7 @@ use crate::line::{Line, Mesh};
 use crate::modal::ModalDamping;
 use crate::modes::Modes;
 use crate::recovery::ModalFactors;
+use crate::steps::narrowest_panel;
 
 /// A bridge given by lines along the path of the wheels.
 #[derive(Debug, Clone)]
@@ -202,7 +203,10 @@ impl Given {
         points.extend([0.0, self.mesh.length()]);
         points.sort_by(f64::total_cmp);
         let near = COINCIDENT * self.mesh.length();
-        points.windows(2).map(|p| p[1] - p[0]).filter(|&w| w > near).fold(self.mesh.length(), f64::min)
+        let mut bounds: Vec<f64> = self.supports.iter().map(|s| s.at).collect();
+        bounds.extend([0.0, self.mesh.length()]);
+        bounds.sort_by(f64::total_cmp);
+        narrowest_panel(&points, &bounds, near).min(self.mesh.length())
     }
 }
 

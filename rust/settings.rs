@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::course::Drive;
 use crate::error::{Error, not_negative, positive};
+use crate::motion::reasonable;
 use crate::road::Road;
 
 /// How vehicles cross.
@@ -59,7 +60,7 @@ impl Settings {
             return Err(Error::input("ramp", format!("{} m", self.ramp), allowed));
         }
         not_negative("tail", self.tail)?;
-        positive("gravity", self.gravity)?;
+        reasonable("gravity", positive("gravity", self.gravity)?, "m/s2")?;
         if let Some(step) = self.step {
             positive("step", step)?;
         }

@@ -17,6 +17,12 @@ const STEPS_PER_PERIOD: f64 = 20.0;
 /// Steps to the narrowest panel unless the user gives a step.
 const STEPS_PER_PANEL: f64 = 100.0;
 
+/// How many times as wide as a panel the others of its span may be before it is passed over.
+const SLIVER: f64 = 4.0;
+
+/// Speed below which it is the speed that makes a crossing long [m/s].
+const SLOW: f64 = 0.1;
+
 /// Way in front of an axle that the road's unevenness needs at most in one step unless the user gives a step [m]: a fifth
 /// of the shortest wave that is usual.
 const WAY_PER_STEP: f64 = 0.05;
@@ -44,7 +50,8 @@ impl Steps {
         let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
         let finest = courses.iter().map(|course| course.road.finest()).fold(f64::INFINITY, f64::min);
         let way = Steps::longest_way(model.narrowest_panel, uneven, finest);
-        let longest = settings.step.unwrap_or(resolved.min(way / speed));
+        let usual = resolved.min(way / speed);
+        let longest = settings.step.unwrap_or(usual);
         if longest > limit {
             let frequency = fastest / std::f64::consts::TAU;
             return Err(Error::StepTooLong { step: longest, beta: settings.beta, limit, frequency });
@@ -60,16 +67,35 @@ impl Steps {
         // A path of a whole number of steps is not given one more because of rounding.
         let count = (span / longest - 1e-9).ceil().max(1.0);
         let steps = count + settings.tail / longest;
-        if steps > MAX_STEPS as f64 {
+        // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
+        let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
+        let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
+        let numbers = 1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles;
+        let bytes = (size_of::<f64>() * numbers) as f64;
+        let blamed = |most: f64| {
             let first = settings.approach / courses[0].speed.max(1e-300);
             let late = courses.iter().map(|course| course.entry).fold(0.0, f64::max);
-            let (key, value) = match settings.step {
-                _ if settings.tail / longest > 0.5 * steps => ("tail", format!("{:e} s", settings.tail)),
-                _ if first > 0.5 * span => ("approach", format!("{:e} m", settings.approach)),
-                _ if late > 0.5 * span => ("entry", format!("{late:e} s")),
+            let few = |span: f64, tail: f64, step: f64| span / step + tail / step <= most;
+            match settings.step {
+                Some(step) if few(span, settings.tail, usual) => Some(("step", format!("{step:e} s"))),
+                _ if few(span, 0.0, longest) => Some(("tail", format!("{:e} s", settings.tail))),
+                _ if few(span - first, settings.tail, longest) => {
+                    Some(("approach", format!("{:e} m", settings.approach)))
+                }
+                _ if few(span - late, settings.tail, longest) => Some(("entry", format!("{late:e} s"))),
+                _ => None,
+            }
+        };
+        if steps > MAX_STEPS as f64 {
+            let (key, value) = blamed(MAX_STEPS as f64).unwrap_or_else(|| match settings.step {
                 Some(step) => ("step", format!("{step:e} s")),
+                None if speed >= SLOW && resolved < way / speed => {
+                    let [bridge, own, tyres] = model.fastest_parts(courses.iter().map(|course| course.vehicle));
+                    let key = if own + tyres > bridge { "vehicle" } else { "bridge" };
+                    (key, format!("shortest period of {:e} s", std::f64::consts::TAU / fastest))
+                }
                 None => ("speed", format!("{speed:e} m/s")),
-            };
+            });
             let mut allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
             if settings.step.is_none() {
                 allowed += &format!(
@@ -81,18 +107,14 @@ impl Steps {
             }
             return Err(Error::input(key, value, allowed));
         }
-        // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
-        let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
-        let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
-        let numbers = 1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles;
-        let bytes = steps * (size_of::<f64>() * numbers) as f64;
-        if bytes > MAX_HISTORY_BYTES {
+        if steps * bytes > MAX_HISTORY_BYTES {
             let allowed = format!(
                 "{steps:.3e} steps would take {:.1} GB of memory, more than {:.1}: use fewer modes or a longer step",
-                bytes / 1e9,
+                steps * bytes / 1e9,
                 MAX_HISTORY_BYTES / 1e9
             );
-            return Err(Error::input("modes", modes, allowed));
+            let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
+            return Err(Error::input(key, value, allowed));
         }
         Ok(match courses {
             [course] if course.is_steady() => {
@@ -116,6 +138,21 @@ impl Steps {
         let way = narrowest_panel / STEPS_PER_PANEL;
         if uneven { way.min(WAY_PER_STEP).min(0.5 * finest) } else { way }
     }
+}
+
+/// Narrowest panel of those that `points`, ascending, make of the spans between `bounds` [m]. None counts as narrower than a
+/// quarter of the mean of its span: influence lines are exact and an axle on a section is an instant of its own, so that a
+/// mass close beside a station does not ask for shorter steps all the way. Equal shares have halves at the supports.
+pub fn narrowest_panel(points: &[f64], bounds: &[f64], near: f64) -> f64 {
+    let widths = |from: f64, to: f64| {
+        let inside = points.windows(2).filter(move |p| p[0] > from - near && p[1] < to + near);
+        inside.map(|p| p[1] - p[0]).filter(move |&w| w > near)
+    };
+    let spans = bounds.windows(2).map(|ends| {
+        let least = (ends[1] - ends[0]) / widths(ends[0], ends[1]).count() as f64 / SLIVER;
+        widths(ends[0], ends[1]).map(|w| w.max(least)).fold(f64::INFINITY, f64::min)
+    });
+    spans.fold(f64::INFINITY, f64::min)
 }
 
 /// Highest speed before the last axle has left, where speeds grow for ever [m/s].

@@ -162,6 +162,19 @@ impl Samples {
         Some(own[if own.len() == 1 { 0 } else { part }])
     }
 
+    /// The factor of a sample that is farthest from 1, if it is far enough to be what makes its steps too short: 100 times
+    /// as stiff or as light.
+    pub fn farthest(&self, sample: usize) -> Option<(&'static str, f64)> {
+        const FAR: f64 = 100.0;
+        let distance = |factor: f64| factor.max(1.0 / factor);
+        let all = self.factors.iter().flat_map(|factors| {
+            let name = factors.parameter.name();
+            factors.of(sample).iter().map(move |&factor| (name, factor))
+        });
+        let far = all.filter(|&(_, factor)| distance(factor) > FAR);
+        far.max_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))
+    }
+
     /// Whether a parameter is varied.
     pub fn varies(&self, parameter: Parameter) -> bool {
         self.factors.iter().any(|factors| factors.parameter == parameter)
