@@ -54,7 +54,15 @@ impl Analysis {
         let _mode = Standard::set();
         let sections = match sections {
             Some(sections) => checked_sections(sections, bridge.length())?,
-            None => checked_sections(&bridge.default_sections(), bridge.length())?,
+            None => {
+                let sections = bridge.default_sections();
+                if sections.len() > MAX_SECTIONS {
+                    let size = format!("{} stations, supports and tenth points", sections.len());
+                    let allowed = format!("too many to look at by default, at most {MAX_SECTIONS}: give sections");
+                    return Err(Error::input("bridge", size, allowed));
+                }
+                checked_sections(&sections, bridge.length())?
+            }
         };
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);

@@ -136,17 +136,22 @@ impl ContactPoint {
 /// body of 1e-300 kg is to be named, not the axles that seem to let it pitch.
 fn out_of_proportion(bodies: &[Body]) -> Option<Error> {
     /// What vehicles have, in SI units, by the name of the value.
-    const USUAL: [(&str, f64); 6] = [
+    const USUAL: [(&str, f64); 5] = [
         ("mass", 1e4),
         ("pitch_inertia", 1e5),
         ("stiffness", 1e6),
         ("tyre_stiffness", 1e6),
         ("suspension_stiffness", 1e6),
-        ("position", 1.0),
     ];
     /// By how many powers of ten a value may differ from them.
     const FAR: f64 = 9.0;
+    /// Longest distance between the parts of a vehicle [m].
+    const FARTHEST: f64 = 1e4;
     let decades = |name: &str, value: f64| {
+        // However short a distance is, it is one.
+        if matches!(name, "position" | "at" | "own") {
+            return if value.abs() < FARTHEST { 0.0 } else { FAR + (value.abs() / FARTHEST).log10() + 1.0 };
+        }
         let usual = USUAL.iter().find(|(each, _)| *each == name).map_or(1.0, |each| each.1);
         if value == 0.0 { 0.0 } else { (value.abs() / usual).log10().abs() }
     };
@@ -170,13 +175,18 @@ fn out_of_proportion(bodies: &[Body]) -> Option<Error> {
         }
         let mut springs = 0;
         for coupling in &body.couplings {
-            match coupling {
+            let place = match coupling {
                 Coupling::Spring { stiffness, .. } => {
-                    look(format!("{here}springs[{springs}]."), "stiffness", *stiffness);
+                    let place = format!("{here}springs[{springs}].");
+                    look(place.clone(), "stiffness", *stiffness);
                     springs += 1;
+                    place
                 }
-                Coupling::Hinge { .. } => {}
-            }
+                Coupling::Hinge { .. } => format!("{here}hinge."),
+            };
+            let (_, at, own) = coupling.ends();
+            look(place.clone(), "at", at);
+            look(place, "own", own);
         }
     }
     let (_, key, value) = found?;

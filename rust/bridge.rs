@@ -180,6 +180,8 @@ impl Bridge {
             let allowed = "at least one station off the supports must carry mass";
             return Err(match total > 0.0 {
                 true => Error::input("stations", "all on supports", allowed),
+                // So short that the mass on it is lost in rounding.
+                false if length < 1e-9 => Error::input("spans", format!("{length:e} m in all"), allowed),
                 false => Error::input("mass", 0, allowed),
             });
         }

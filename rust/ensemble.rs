@@ -291,7 +291,7 @@ impl Study {
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
                 let usual = way > Steps::resolving(fastest).min(limit) * speed;
                 let (key, value) = match self.settings.step {
-                    _ if self.settings.tail * speed / way > 0.5 * count => {
+                    _ if steps as f64 * f64::from(1u32 << halvings.min(30)) < 0.5 * count => {
                         ("tail".to_string(), format!("{} s", self.settings.tail))
                     }
                     Some(step) if !usual => ("step".to_string(), format!("{step} s")),

@@ -327,7 +327,7 @@ DOORS: Final[dict[str, Door]] = {
         },
         also={"length": "supports station"},
     ),
-    "Bridge.from_modes": Door(sw.Bridge.from_modes, LINES),
+    "Bridge.from_modes": Door(sw.Bridge.from_modes, LINES, also={"frequencies": "mode"}),
     "Support": Door(with_support, {"at": 0.0}, sw.Support, also={"at": "supports"}),
     "Along": Door(with_along, {"at": [0.0, 20.0], "values": [1e9, 2e9]}, sw.Along),
     "Bridge.modes": Door(B.modes, {"count": 2}, also={"count": "modes"}),
@@ -345,8 +345,18 @@ DOORS: Final[dict[str, Door]] = {
     "Rayleigh.ratios": Door(sw.Rayleigh(0.1, 0.001).ratios, {"frequencies": [1.0]}),
     "Axle": Door(with_axle, AXLE, sw.Axle),
     "Body": Door(with_body, BODY, sw.Body),
-    "Hinge": Door(with_hinge, {"to": 0, "at": -1.5, "own": 5.0}, sw.Hinge),
-    "Spring": Door(with_spring, {"to": 0, "at": -1.5, "own": 5.0, "stiffness": 1e6}, sw.Spring),
+    "Hinge": Door(
+        with_hinge,
+        {"to": 0, "at": -1.5, "own": 5.0},
+        sw.Hinge,
+        also={"at": "hinge", "own": "hinge"},
+    ),
+    "Spring": Door(
+        with_spring,
+        {"to": 0, "at": -1.5, "own": 5.0, "stiffness": 1e6},
+        sw.Spring,
+        also={"at": "spring axle", "own": "spring axle"},
+    ),
     "Vehicle": Door(
         sw.Vehicle,
         {"mass": 2e4, "pitch_inertia": 6e4, "axles": [sw.Axle(**AXLE), sw.Axle(**REAR)]},
@@ -372,10 +382,19 @@ DOORS: Final[dict[str, Door]] = {
         sw.cross,
         {"bridge": B, "vehicle": Q, "speed": 20.0, "road": ROUGH, "drive": "constant-traction"},
         raises=NUMERICS,
+        also={"approach": "path"},
     ),
     "ensemble": Door(
         sw.ensemble,
         {"bridge": B, "vehicle": Q, "speed": 20.0, "samples": 2, "road": ROUGH},
+        but=("progress",),
+    ),
+    # What is called may raise what it likes.
+    "ensemble(progress)": Door(
+        lambda progress: (
+            callable(progress) or sw.ensemble(B, Q, speed=20.0, samples=2, progress=progress)
+        ),
+        {"progress": None},
     ),
     "ensemble(factors)": Door(
         lambda **factors: sw.ensemble(B, Q, speed=20.0, samples=2, factors=factors),
@@ -394,17 +413,24 @@ DOORS: Final[dict[str, Door]] = {
             "speed": 20.0,
             "samples": 2,
         },
+        also={"vehicle": "kind"},
+        but=("progress",),
     ),
     "Case": Door(
         lambda **k: sw.Case(**k).run(),
         {"bridge": B, "passages": (sw.Passage(vehicle=Q),), "crossing": {"speed": 20.0}},
         sw.Case,
+        also={"crossing": "key"},
     ),
-    "Case.read": Door(sw.Case.read, {"path": "case.toml"}, raises=(OSError,)),
+    "Case.read": Door(
+        sw.Case.read, {"path": "case.toml"}, raises=(OSError,), also={"path": "case"}
+    ),
     "Case.parse": Door(
-        sw.Case.parse, {"text": TEXT}, raises=(OSError,), also={"text": "TOML table"}
+        sw.Case.parse, {"text": TEXT}, raises=(OSError,), also={"text": "TOML case"}
     ),
-    "Case.from_dict": Door(sw.Case.from_dict, {"tables": TABLES}, raises=(OSError,)),
+    "Case.from_dict": Door(
+        sw.Case.from_dict, {"tables": TABLES}, raises=(OSError,), also={"tables": "table bridge"}
+    ),
     "Case.from_dict(tables)": Door(
         lambda **t: sw.Case.from_dict({**TABLES, **t}).run(), more=(*TABLES, "road", "traffic")
     ),
@@ -449,7 +475,7 @@ DOORS: Final[dict[str, Door]] = {
     ),
     "Case.run": Door(CASE.run, like=sw.cross, but=("bridge", "vehicle"), raises=NUMERICS),
     "Case.ensemble": Door(
-        CASE.ensemble, {"samples": 2}, like=sw.ensemble, but=("bridge", "vehicle")
+        CASE.ensemble, {"samples": 2}, like=sw.ensemble, but=("bridge", "vehicle", "progress")
     ),
     "Run.envelope": Door(RUN.envelope, {"quantity": "moment"}),
     "Run.ratios": Door(RUN.ratios),
@@ -478,21 +504,27 @@ DOORS: Final[dict[str, Door]] = {
     "Ramp": Door(sw.Ramp, {"start": 0.0, "end": 18.0, "height": 0.01}),
     "Step": Door(sw.Step, {"at": 3.0, "height": 0.01}),
     "Sum": Door(roads.Sum, {"parts": (ROUGH, ROUGH)}),
-    "Road.elevation": Door(ROUGH.elevation, {"x": 1.0}),
+    "Road.elevation": Door(ROUGH.elevation, {"x": 1.0}, also={"x": "path"}),
     "Road.slope": Door(ROUGH.slope, {"x": 1.0}),
-    "Road.curvature": Door(sw.Profile(**PROFILE).curvature, {"x": 1.0}),
+    "Road.curvature": Door(sw.Profile(**PROFILE).curvature, {"x": 1.0}, also={"x": "path"}),
     "Road.iri": Door(ROUGH.iri, {"start": 0.0, "end": 100.0}),
     "Road.psd": Door(ROUGH.psd, {"start": 0.0, "end": 100.0}, also=ENDS),
     "Road.iso_class": Door(ROUGH.iso_class, {"start": 0.0, "end": 300.0}, also=ENDS),
-    "factor * Road": Door(lambda factor: factor * ROUGH, {"factor": 1.0}),
-    "factor * Bump": Door(lambda factor: factor * sw.Bump(3.0, 1.0, 0.01), {"factor": 1.0}),
+    "factor * Road": Door(
+        lambda factor: factor * ROUGH, {"factor": 1.0}, also={"factor": "operand"}
+    ),
+    "factor * Bump": Door(
+        lambda factor: factor * sw.Bump(3.0, 1.0, 0.01), {"factor": 1.0}, also={"factor": "operand"}
+    ),
     "factor * Sum": Door(
-        lambda factor: (ROUGH + sw.Bump(3.0, 1.0, 0.01)) * factor, {"factor": 1.0}
+        lambda factor: (ROUGH + sw.Bump(3.0, 1.0, 0.01)) * factor,
+        {"factor": 1.0},
+        also={"factor": "operand"},
     ),
     "bridge_study": Door(roads.bridge_study, {"condition": "good"}, more=("seed",)),
     "classify": Door(roads.classify, {"G": 1e-6}),
     "from_iri": Door(roads.from_iri, {"iri": 2.0}, more=("seed", "band")),
-    "from_table": Door(roads.from_table, {"table": {"kind": "smooth"}}),
+    "from_table": Door(roads.from_table, {"table": {"kind": "smooth"}}, also={"table": "kind"}),
     "from_table(iso-8608)": Door(
         lambda **k: roads.from_table({"kind": "iso-8608", "class": "A", **k}),
         more=("kind", "class", "G", "band", "seed", "contact_patch"),
@@ -553,7 +585,7 @@ def fault_of(name: str, argument: str, value: object) -> str:
 def fault_of_error(door: Door, argument: str, error: Exception) -> str:
     """What is wrong with an error, or nothing."""
     said = f"{type(error).__name__}: {error}"
-    allowed = (ValueError, TypeError, *door.raises)
+    allowed: tuple[type[Exception], ...] = (ValueError, TypeError, *door.raises)
     if not isinstance(error, allowed) or isinstance(error, UnicodeError):
         return f"raises {said[:SHORT]}"
     if isinstance(error, OSError):

@@ -218,7 +218,7 @@ def test_history_elsewhere_is_refused_with_what_is_near(two_spans: Scene) -> Non
         two_spans.run.plot.history("moment", 9.1)
     with pytest.raises(ValueError, match=r"nearest is at 2$"):
         two_spans.run.plot.history("axle_loads", 3)
-    with pytest.raises(ValueError, match="must be left or right"):
+    with pytest.raises(ValueError, match="must be one of left, right"):
         two_spans.run.plot.history("shear", 9.0, side="right-hand")  # type: ignore[arg-type]
 
 

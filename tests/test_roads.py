@@ -388,7 +388,7 @@ REFUSALS: list[Refusal] = [
     (lambda: sw.ISO8608(), ("class, G", "one of the two")),
     (lambda: sw.ISO8608("K"), ("class = 'K'", "A, B, C, D, E, F, G, H")),
     (lambda: sw.ISO8608("b"), ("class = 'b'", "did you mean 'B'")),
-    (lambda: sw.ISO8608(2), ("class = 2", "must be A, B")),  # type: ignore[arg-type]
+    (lambda: sw.ISO8608(2), ("class = 2", "must be one of A, B")),  # type: ignore[arg-type]
     (lambda: sw.ISO8608("A", G=64e-6), ("G = 6.4e-05", "not used with class = 'A'")),
     (lambda: sw.ISO8608(G=0.0), ("G = 0", POSITIVE)),
     (lambda: sw.ISO8608(G=nan), ("G = NaN", POSITIVE)),

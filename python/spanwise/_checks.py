@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import reprlib
 import sys
 from collections.abc import Iterable, Mapping, Sized
 from collections.abc import Set as AbstractSet
@@ -17,41 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._keys import suggestion
+from spanwise._shown import LONGEST
+from spanwise._shown import shown as shown
 
 Numbers: TypeAlias = float | Iterable[float]
-
-#: Longest text of an offending value in a message.
-_SHOWN: Final = 80
 
 #: Most values in a list, and in an array: what never ends is told before it takes all memory.
 MOST_LISTED: Final = 1_000_000
 MOST_IN_ARRAY: Final = 100_000_000
-
-
-class _Short(reprlib.Repr):
-    """Text of values of any size and depth, also of those that cannot tell theirs."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.maxstring, self.maxother = 2 * _SHOWN, sys.maxsize
-        self.maxtuple = self.maxlist = self.maxarray = self.maxdict = self.maxset = _SHOWN
-
-    def repr_int(self, value: int, level: int) -> str:
-        """Of more digits than Python writes, their number."""
-        if value.bit_length() < 1000:
-            return repr(value)
-        digits = int(value.bit_length() * math.log10(2.0)) + 1
-        return f"a whole number of about {digits} digits"
-
-
-def shown(value: object) -> str:
-    """The value as text on one line, cut where it is long."""
-    try:
-        text = " ".join(_Short().repr(value).split())
-    except Exception:
-        # Whatever it is, it is not what was to be, and that is what is to be told.
-        text = f"<{type(value).__name__}>"
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def number(key: str, value: object) -> float:
@@ -149,7 +121,7 @@ def flag(key: str, value: object) -> bool:
 
 def word(key: str, value: object, *options: str) -> str:
     """A piece of text; whether it is one of the options is left to who reads it."""
-    if isinstance(value, str) and len(value) <= _SHOWN and value.isprintable():
+    if isinstance(value, str) and len(value) <= LONGEST and value.isprintable():
         return value
     allowed = " or ".join(filter(None, (", ".join(options[:-1]), *options[-1:]))) or "text"
     raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
@@ -159,7 +131,7 @@ def choice(key: str, value: object, options: Iterable[str]) -> str:
     """One of several words, which the message names with the one that may have been meant."""
     allowed = [*options]
     if not isinstance(value, str) or value not in allowed:
-        near = suggestion(value, allowed) if isinstance(value, str) else ""
+        near = suggestion(value, allowed)
         raise ValueError(f"{key} = {shown(value)}: must be one of {', '.join(allowed)}{near}")
     return str(value)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
 
-from spanwise._checks import count, flag, number, numbers, word
+import numpy as np
+
+from spanwise._checks import count, flag, is_list, items, number, numbers, word
 from spanwise._warnings import DampingWarning
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, plain_damping, resolved
@@ -76,6 +78,8 @@ class Conditions:
         if damping is None:
             warnings.warn(UNDAMPED, DampingWarning, stacklevel=3)
             damping = 0.0
+        if not isinstance(damping, Mapping | np.ndarray) and is_list(damping):
+            damping = items("damping", damping)
         ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
         beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
         approach, tail, mask = number("approach", approach), number("tail", tail), masked(mask)

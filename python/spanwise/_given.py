@@ -148,8 +148,8 @@ def _table(key: str, value: object) -> Mapping[str, Any]:
         raise ValueError(f"{key} = {shown(value)}: must name its responses: {{'moment': ...}}")
     for name in value:
         if name not in QUANTITIES:
-            hint = suggestion(str(name), QUANTITIES)
+            hint = suggestion(name, QUANTITIES)
             raise ValueError(
-                f"{key}: unknown response {name!r}{hint}; allowed: {', '.join(QUANTITIES)}"
+                f"{key}: unknown response {shown(name)}{hint}; allowed: {', '.join(QUANTITIES)}"
             )
     return value

@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from inspect import Parameter, signature
 from typing import Any
 
+from spanwise._shown import LONGEST, shown
+
 
 @dataclass(frozen=True)
 class Keys:
@@ -31,12 +33,14 @@ class Keys:
         required = [p.name for p in found if p.default is Parameter.empty]
         return cls(tuple(p.name for p in found), tuple(required))
 
-    def check_known(self, table: Mapping[str, object], hint: Callable[[str], str]) -> None:
+    def check_known(self, table: Mapping[Any, object], hint: Callable[[str], str]) -> None:
         """Refuse unknown keys, with a hint or else the nearest known key."""
         for key in table:
             if key not in self.allowed:
-                help_ = hint(key) or suggestion(key, self.allowed)
-                raise ValueError(f"unknown key {key!r}{help_}; allowed: {', '.join(self.allowed)}")
+                help_ = (hint(key) if isinstance(key, str) else "") or suggestion(key, self.allowed)
+                raise ValueError(
+                    f"unknown key {shown(key)}{help_}; allowed: {', '.join(self.allowed)}"
+                )
 
     def check_complete(self, table: Mapping[str, object]) -> None:
         """Refuse a table in which a required key is missing."""
@@ -45,8 +49,10 @@ class Keys:
             raise ValueError(f"missing {', '.join(missing)}")
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
+def suggestion(word: object, known: Iterable[str]) -> str:
     """`` (did you mean ...?)`` with the nearest known word, or nothing."""
+    if not isinstance(word, str) or len(word) > LONGEST:
+        return ""
     by_lower = {each.lower(): each for each in known}
     near = get_close_matches(word.lower(), by_lower, n=1)
     return f" (did you mean {by_lower[near[0]]!r}?)" if near else ""

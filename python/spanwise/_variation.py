@@ -198,9 +198,9 @@ def _table(key: str, table: object) -> Mapping[str, object]:
     allowed = [name for name in ATTRIBUTES if key == "factors" or name not in OF_BRIDGES]
     for name in table:
         if name not in ATTRIBUTES:
-            near = suggestion(name, allowed) if isinstance(name, str) else ""
+            near = suggestion(name, allowed)
             raise ValueError(
-                f"{key}: unknown parameter {name!r}{near}; allowed: {', '.join(allowed)}"
+                f"{key}: unknown parameter {shown(name)}{near}; allowed: {', '.join(allowed)}"
             )
     return table
 

@@ -286,19 +286,21 @@ def _with_infinity(value: Any, name: str = "tables", depth: int = 0) -> Any:
     if isinstance(value, Mapping | list | tuple) and depth > MAX_DEPTH:
         raise ValueError(f"{name} = {shown(value)}: has more than {MAX_DEPTH} levels")
     if isinstance(value, Mapping):
-        # Told by its table and key, however deep it goes on.
-        names = {k: f"{name}.{k}" if depth == 1 else str(k) if depth == 0 else name for k in value}
-        return {k: _with_infinity(each, names[k], depth + 1) for k, each in value.items()}
+        before = f"{name}." if depth else ""
+        return {
+            key: _with_infinity(each, f"{before}{key}" if isinstance(key, str) else name, depth + 1)
+            for key, each in value.items()
+        }
     if isinstance(value, list | tuple):
         return [_with_infinity(each, name, depth + 1) for each in value]
     return math.inf if isinstance(value, str) and value == "inf" else value
 
 
-def _check_tables(tables: Table) -> None:
+def _check_tables(tables: Mapping[Any, Any]) -> None:
     for name, table in tables.items():
         if name not in TABLES:
-            hint = _home(name) or suggestion(name, TABLES)
-            raise ValueError(f"unknown table or key {name!r}{hint}; allowed: {_list(TABLES)}")
+            hint = (_home(name) if isinstance(name, str) else "") or suggestion(name, TABLES)
+            raise ValueError(f"unknown table or key {shown(name)}{hint}; allowed: {_list(TABLES)}")
         several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
         if name == "traffic":
             if not several:

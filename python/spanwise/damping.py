@@ -130,7 +130,8 @@ def plain_damping(damping: Damping) -> object:
         damping = _rayleigh(damping["rayleigh"])
     if isinstance(damping, Rayleigh):
         return {"rayleigh": [damping.alpha, damping.beta]}
-    values = np.asarray(damping, dtype=np.float64)
+    with np.errstate(over="ignore"):
+        values = np.asarray(damping, dtype=np.float64)
     return values.item() if values.size == 1 and values.ndim < 2 else values.tolist()
 
 

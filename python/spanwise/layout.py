@@ -144,6 +144,6 @@ def _check_keys(
     )
     for each in table:
         if each not in allowed:
-            raise ValueError(f"{wanted}; unknown key {shown(each)}{suggestion(str(each), allowed)}")
+            raise ValueError(f"{wanted}; unknown key {shown(each)}{suggestion(each, allowed)}")
     if missing := [each for each in required if each not in table]:
         raise ValueError(f"{wanted}; missing {', '.join(missing)}")

@@ -166,7 +166,7 @@ def drive_of(value: object) -> Drive:
     try:
         plain = word("drive", value, *get_args(Plain))
         if plain not in get_args(Plain):
-            raise ValueError(f"drive = {shown(plain)}: must be constant-speed or constant-traction")
+            raise ValueError(f'drive = "{plain}": must be constant-speed or constant-traction')
     except ValueError as error:
         raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
     return plain  # type: ignore[return-value]
@@ -229,7 +229,7 @@ class Passage:
             raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
         object.__setattr__(self, "entry", not_negative("entry", self.entry))
         if word("direction", self.direction, *get_args(Direction)) not in get_args(Direction):
-            raise ValueError(f"direction = {shown(self.direction)}: must be right or left")
+            raise ValueError(f'direction = "{self.direction}": must be right or left')
         if self.lane is not None:
             lane = whole_from("lane", self.lane, -MOST_LANE, MOST_LANE)
             object.__setattr__(self, "lane", lane)

@@ -70,7 +70,7 @@ impl Given {
                 "give two points or more, from 0 to the length",
             ));
         }
-        let length = checked_length(data.path[count - 1])?;
+        let length = positive(format!("path[{}]", count - 1), data.path[count - 1])?;
         checked_positions("path", &data.path, length)?;
         if data.path[0] != 0.0 {
             return Err(Error::input("path[0]", format!("{} m", data.path[0]), "the path must begin at 0"));

@@ -55,7 +55,11 @@ impl Spectrum {
         let spectrum = Spectrum { roughness, waviness, band };
         if !(spectrum.variance().is_finite() && spectrum.variance() > 0.0) {
             let allowed = "the variance of the elevation over the band must be a positive finite number";
-            return Err(Error::input("waviness", waviness, allowed));
+            let (key, value) = match roughness {
+                1e-20..1e20 => ("waviness", waviness),
+                _ => ("G", roughness),
+            };
+            return Err(Error::input(key, value, allowed));
         }
         Ok(spectrum)
     }
