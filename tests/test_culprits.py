@@ -10,6 +10,9 @@ import pytest
 
 import spanwise as sw
 
+# What is extreme is hardly plausible.
+pytestmark = pytest.mark.filterwarnings("ignore::spanwise.PlausibilityWarning")
+
 BRIDGE = sw.Bridge(spans=[18.0, 18.0], EI=1.9e9, mass=6e3, stations_per_span=3)
 TRUCK = sw.vehicles.half_car()
 ROAD = sw.ISO8608("A")

@@ -695,7 +695,7 @@ ARRAYS: Final[dict[str, tuple[Callable[[Any], object], list[Any]]]] = {
     "loads": (lambda v: sw.ForceTrain(loads=v, spacings=[3.0]).static_loads(), [1e4, 2e4]),
     "elevation": (lambda v: ROUGH.elevation(v), [[0.0, 1.5, 3.0], [7.0, 9.0, 11.0]]),
     "profile": (
-        lambda v: sw.Profile(v, [0.0, 0.25, 0.5, 0.0, 0.0]).elevation(1.5),
+        lambda v: sw.Profile(v, [0.0, 2**-8, 2**-7, 0.0, 0.0]).elevation(1.5),
         [0.0, 1.0, 2.0, 3.0, 4.0],
     ),
     "speed": (
