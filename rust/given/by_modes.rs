@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{Given, Motion, checked_length, checked_matrix, checked_positions};
+use super::{Given, Motion, checked_matrix, checked_positions};
 use crate::bridge::{COINCIDENT, Support, checked_supports_of_given};
 use crate::error::{Error, not_negative, positive};
 use crate::influence::{Quantity, Responses};
