@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from spanwise._warnings import PlausibilityWarning
 from spanwise.bridge import Bridge
-from spanwise.roads import Profile, Road, Sum
+from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.traffic import Drive, Passage, Speeds
 from spanwise.vehicle import Vehicle
 
@@ -58,6 +58,8 @@ def doubt(
     drive: Drive,
     road: Road,
     gravity: float,
+    step: float | None,
+    advance: float | None = None,
 ) -> None:
     """Warn the caller's caller of what a crossing, or the events of an ensemble, hardly mean."""
     span = _longest_span(bridge)
@@ -72,6 +74,7 @@ def doubt(
             ("springs", _springs(passage, gravity)),
             ("speed", _speed(passage, fastest)),
             ("spacing", _spacing(passage.road or road, fastest)),
+            ("step", _passed_over(passage.road or road, fastest, step, advance)),
         ):
             # Of many vehicles the first of each kind of slip tells enough.
             if said and key not in seen:
@@ -210,3 +213,36 @@ def _spacing(road: Road, speed: float) -> str | None:
         f"which at {speed:.3g} m/s a vehicle feels from {speed / (2 * spacing):.2g} Hz on, are not "
         "in it; is x in m?"
     )
+
+
+def _passed_over(road: Road, speed: float, step: float | None, advance: float | None) -> str | None:
+    """Of a step, or a way per step, that was given: waves of the road that it passes over."""
+    if step is None and advance is None:
+        return None
+    way = min(x for x in (advance, None if step is None else step * speed) if x is not None)
+    patch, shortest = _shortest(road)
+    # What is shorter than the contact patch is averaged away.
+    if way <= patch or way <= 0.5 * shortest:
+        return None
+    given = f"step = {step:g} s: at {speed:.3g} m/s" if advance is None else f"advance = {way:g} m:"
+    return (
+        f"{given} an axle goes {way:.3g} m in a step, more than half of the shortest wave of the "
+        f"road, {shortest:.3g} m, which it passes over; is the step in s, the way in m?"
+    )
+
+
+def _shortest(road: Road) -> tuple[float, float]:
+    """Contact patch and shortest wave, or edge, of what is shortest in a road [m]."""
+    if isinstance(road, Sum):
+        return min(map(_shortest, road.parts), key=lambda each: (max(each), each[0]))
+    patch = float(getattr(road, "contact_patch", 0.0))
+    if road.is_smooth:
+        return patch, np.inf
+    if isinstance(road, ISO8608):
+        return patch, 1.0 / road.band[1]
+    if isinstance(road, Profile):
+        return patch, 2.0 * float(np.median(np.diff(road.x)))
+    # Of a single feature the core takes short enough steps, unless a step is given.
+    lengths = [getattr(road, name, 0.0) for name in ("edge", "gap", "length")]
+    lengths.append(getattr(road, "end", 0.0) - getattr(road, "start", 0.0))
+    return patch, min((each for each in lengths if each > 0.0), default=np.inf)

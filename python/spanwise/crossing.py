@@ -181,6 +181,7 @@ def cross(
         drive=driven,
         road=surface,
         gravity=conditions.core["gravity"],
+        step=conditions.core["step"],
     )
     for k in range(len(passages)):
         for remark in remarks(run, k):

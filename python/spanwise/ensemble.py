@@ -187,6 +187,7 @@ def ensemble(
     samples, seed, first = count("samples", samples), count("seed", seed), count("first", first)
     if samples > MOST_SAMPLES:
         raise ValueError(f"samples = {samples}: must be at most {MOST_SAMPLES}")
+    advance = None if advance is None else number("advance", advance)
     driven = drive_of(drive)
     own_roads = flag("own_roads", own_roads)
     kinds = kind_column(kind, events, samples)
@@ -215,18 +216,20 @@ def ensemble(
     refuse_overdamped(varied, conditions.core["damping"], first)
     for remark in idle(varied, events, conditions.core):
         warnings.warn(remark, UserWarning, stacklevel=2)
+    simple = all(is_simple(event, driven) for event in events)
     doubt(
         bridge,
         bridge.modes(conditions.modes).frequencies[0],
         events,
         speed=float(speeds.column.max(initial=0.0)),
         drive=driven,
-        road=shared,
+        road=surface,
         gravity=conditions.core["gravity"],
+        # Side by side they take no longer ways than by default, whatever the step is.
+        step=None if simple else conditions.core["step"],
+        advance=advance if simple else None,
     )
-    advance = None if advance is None else number("advance", advance)
     looked_at = _quantities(bridge, quantities)
-    simple = all(is_simple(event, driven) for event in events)
     column = speeds_by_kind(speeds, events, kinds, samples) if simple else speeds
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
