@@ -118,6 +118,8 @@ pub struct Body {
 pub struct Vehicle {
     bodies: Vec<Body>,
     axles: Vec<Axle>,
+    /// Positions of a train, as given [m].
+    places: Vec<f64>,
     assembly: Assembly,
 }
 
@@ -152,7 +154,8 @@ impl Vehicle {
             return Err(Error::input("axles[0].position", format!("{} m", axle.position), allowed));
         }
         let assembly = Assembly::of_bodies(&bodies)?;
-        Ok(Vehicle { axles: order.iter().map(|&(b, i)| bodies[b].axles[i]).collect(), bodies, assembly })
+        let axles = order.iter().map(|&(b, i)| bodies[b].axles[i]).collect();
+        Ok(Vehicle { axles, bodies, places: Vec::new(), assembly })
     }
 
     /// Constant forces [N] at positions ahead of any point [m], front first.
@@ -180,7 +183,16 @@ impl Vehicle {
             check_behind(format!("positions[{k}]"), *position, k.checked_sub(1).map(|before| positions[before]))?;
         }
         let laws = values.iter().map(|value| (*value, law(*value))).collect();
-        Ok(Vehicle { bodies: Vec::new(), axles: Vec::new(), assembly: Assembly::of_contacts(laws, positions) })
+        let assembly = Assembly::of_contacts(laws, positions);
+        Ok(Vehicle { bodies: Vec::new(), axles: Vec::new(), places: positions.to_vec(), assembly })
+    }
+
+    /// A train with other loads [N] or masses [kg] at the same places, to the bit.
+    pub fn with_shares(&self, shares: &[f64]) -> Result<Self, Error> {
+        match self.assembly.contacts[0].law {
+            ContactLaw::Force => Vehicle::force_train(shares, &self.places),
+            _ => Vehicle::moving_masses(shares, &self.places),
+        }
     }
 
     /// Total mass [kg], unsprung masses included; none of a train of forces.

@@ -146,17 +146,14 @@ def _stiffer(support: Any, factor: float) -> Any:
 
 def _scaled(nominal: AnyVehicle, core: _core.Vehicle, bodies: Sequence[_core._Body]) -> AnyVehicle:
     """The vehicle that the core made of a nominal one and a sample's factors."""
-    scaled: AnyVehicle
-    positions = core.positions.tolist()
+    # Places are as given, not counted from a centre that factors move: axles follow each other at
+    # the same distances, to the bit, and so does what is made of these numbers once more.
+    shares = core.static_loads(1.0).tolist()
     if isinstance(nominal, ForceTrain):
-        scaled = ForceTrain(loads=core.static_loads(1.0).tolist(), positions=positions)
-    elif isinstance(nominal, MovingMasses):
-        scaled = MovingMasses(masses=core.static_loads(1.0).tolist(), positions=positions)
-    else:
-        scaled = Vehicle(bodies=[_body(each) for each in bodies])
-    # What was made of the same numbers once more may differ in the last digit of a position.
-    object.__setattr__(scaled, "_core", core)
-    return scaled
+        return ForceTrain(loads=shares, positions=nominal.positions)
+    if isinstance(nominal, MovingMasses):
+        return MovingMasses(masses=shares, positions=nominal.positions)
+    return Vehicle(bodies=[_body(each) for each in bodies])
 
 
 def _body(body: _core._Body) -> Body:

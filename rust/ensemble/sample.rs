@@ -1,6 +1,6 @@
 //! What differs from sample to sample: number, kind of event, speed, and factors on vehicle and bridge.
 
-use crate::assembly::{ContactLaw, Friction};
+use crate::assembly::Friction;
 use crate::error::Error;
 use crate::vehicle::{Coupling, Vehicle};
 
@@ -244,11 +244,7 @@ impl Samples {
         if vehicle.bodies().is_empty() {
             let shares = contacts.iter().enumerate();
             let scaled: Vec<f64> = shares.map(|(k, c)| c.share * factor(Parameter::BodyMass, axle + k)).collect();
-            let positions: Vec<f64> = contacts.iter().map(|c| c.position).collect();
-            return match contacts[0].law {
-                ContactLaw::Force => Vehicle::force_train(&scaled, &positions),
-                _ => Vehicle::moving_masses(&scaled, &positions),
-            };
+            return vehicle.with_shares(&scaled);
         }
         let mut bodies = vehicle.bodies().to_vec();
         let rubs = |friction: &mut Friction, limit: f64, initial: Option<f64>| {
