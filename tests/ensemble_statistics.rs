@@ -47,9 +47,9 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
         };
         for k in 0..axles {
             let load = |i: usize| history.loads[i * axles + k];
-            let mean = there.clone().map(load).sum::<f64>() / count;
-            let variance = there.clone().map(|i| (load(i) - mean).powi(2)).sum::<f64>() / count;
-            let coefficient = variance.sqrt() / history.static_loads[k];
+            let at_rest = history.static_loads[k];
+            let square = there.clone().map(|i| (load(i) - at_rest).powi(2)).sum::<f64>() / count;
+            let coefficient = square.sqrt() / at_rest;
             near("load coefficient", column(results, sample, Column::LoadCoefficients)[k], coefficient, coefficient);
             // In the air from an instant to the next if the load is zero at the first of them.
             let off = |i: usize| load(i) == 0.0;

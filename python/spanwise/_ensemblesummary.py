@@ -348,7 +348,7 @@ def _few(ensemble: Ensemble) -> Iterator[str]:
 def _ride(ensemble: Ensemble) -> Iterator[str]:
     coefficients = np.nanmean(ensemble.load_coefficients, axis=0)
     yield (
-        "standard deviation of the axle loads on the bridge by their static values, mean of the "
+        "root mean square of the axle loads about their static values, on the bridge, mean of the "
         f"samples: {', '.join(f'{100.0 * each:.1f}' for each in coefficients)} %"
     )
     off = (ensemble.lift_offs > 0).any(axis=1).sum()

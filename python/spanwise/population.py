@@ -307,9 +307,10 @@ class Ensemble:
 
     @property
     def load_coefficients(self) -> Array:
-        """Standard deviation of each axle load by its static value [-], shape (sample, axle).
+        """How much the axle loads vary about their static values [-], shape (sample, axle).
 
-        Over the steps from the first axle on the bridge to the last off it.
+        The root mean square of P - P_st by P_st, over the steps from the first with an axle on the
+        bridge to that with which the last axle leaves it: `Run.load_coefficients`, bit for bit.
         """
         return self._block("load_coefficients")
 

@@ -123,6 +123,7 @@ def _vehicle(run: Run, vehicle: int) -> dict[str, object]:
     stopped = stop(run, vehicle)
     return {
         "static_axle_loads": run.static_axle_loads[own],
+        "load_coefficients": run.load_coefficients[own],
         "final_speed": run.vehicles[vehicle].speed[-1],
         "stopped": stopped and {"time": stopped[0], "axle_positions": stopped[1]},
         "off_road": {

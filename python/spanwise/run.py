@@ -330,6 +330,8 @@ class Run(Responses):
         Static axle loads [N], of all vehicles in their order.
     static : Responses
         Responses to the static axle loads at the same positions.
+    load_coefficients : ndarray, shape (axle,)
+        Root mean square of each axle load about its static value, by that value [-].
     final_speed : float
         Speed of the first vehicle at the end [m/s].
     lift_offs : tuple of LiftOff
@@ -395,6 +397,16 @@ class Run(Responses):
     def axle_loads(self) -> Array:
         """Axle loads [N], shape (time, axle)."""
         return _frozen(self._core.states("axle_loads"))
+
+    @cached_property
+    def load_coefficients(self) -> Array:
+        """How much the axle loads vary about their static values [-], shape (axle,).
+
+        The root mean square of P - P_st by P_st, over the steps from the first with an axle on the
+        bridge to that with which the last axle leaves it. It is taken about the static load, not
+        about the mean: on a short bridge an axle may be above it nearly all the time.
+        """
+        return _frozen(self._core.load_coefficients)
 
     @cached_property
     def vehicles(self) -> tuple[VehicleMotion, ...]:
@@ -531,9 +543,10 @@ class Run(Responses):
         the lists ``max``, ``min``, ``static_max``, ``static_min``, each with its ``..._time`` [s],
         ``..._position`` [m] and ``..._partner`` (see `Extremes`); ``impact_factors``;
         ``final_speed`` of the first vehicle [m/s]; ``vehicles``, for each its static axle loads
-        [N], ``final_speed``, ``stopped`` (time [s] and ``axle_positions`` [m], or None) and
-        ``off_road`` (by axle); ``lift_offs``; ``steps``; ``settings``, the tables of a case that
-        computes the run again: ``Case.from_dict(settings).run()``.
+        [N], ``load_coefficients`` (by axle), ``final_speed``, ``stopped`` (time [s] and
+        ``axle_positions`` [m], or None) and ``off_road`` (by axle); ``lift_offs``; ``steps``;
+        ``settings``, the tables of a case that computes the run again:
+        ``Case.from_dict(settings).run()``.
         """
         from spanwise.report import as_dict
 

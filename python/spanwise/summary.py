@@ -83,6 +83,7 @@ def _description(run: Run) -> Iterator[str]:
     for k in range(len(run.passages)):
         if (stopped := stop(run, k)) is not None:
             yield _standing(run, k, *stopped)
+    yield from _varying(run)
     yield from _off_road(run)
 
 
@@ -153,6 +154,17 @@ def _standing(run: Run, number: int, time: float, at: Array) -> str:
     on = "on the bridge" if ((at >= 0.0) & (at <= run.bridge.length)).any() else "off the bridge"
     where = f"x = {at[0]:.3f} m (front axle)"
     return f"          {name} stops {on} at t = {time:.3f} s, {where}, and stays"
+
+
+def _varying(run: Run) -> Iterator[str]:
+    """How much the axle loads vary, if they do."""
+    percent = 100.0 * run.load_coefficients
+    if not percent.any():
+        return
+    values = f"{percent.min():.1f} to {percent.max():.1f}"
+    if len(percent) <= 8:
+        values = _list(percent, ".1f")
+    yield f"loads     on the bridge {values} % from their static values (root mean square)"
 
 
 def _off_road(run: Run) -> Iterator[str]:

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
-use super::together::deviation as standard_deviation;
 use crate::analysis::Analysis;
 use crate::course::Passage;
 use crate::crossing::{ModalBridge, cross_all};
@@ -139,7 +138,7 @@ pub fn cross(
     Ok(())
 }
 
-/// Contact forces and accelerations; sums from the first axle on the bridge to the last.
+/// Contact forces and accelerations; means over [`History::on_bridge`].
 fn ride(
     history: &History,
     length: f64,
@@ -149,19 +148,9 @@ fn ride(
     instants: &mut [u32],
 ) {
     let axles = history.axles;
-    // With the last axle on the end of the bridge, rounding does not decide.
-    let bridge = 0.0..=length * (1.0 + 1e-12);
-    let on = |i: usize| history.positions[i * axles..(i + 1) * axles].iter().any(|x| bridge.contains(x));
-    let first = (0..history.len()).find(|&i| on(i)).unwrap_or(0);
-    let there: Vec<usize> = (first..=(first..history.len()).rev().find(|&i| on(i)).unwrap_or(first)).collect();
-    let count = there.len().max(1) as f64;
-    let coefficient = |k: usize| {
-        let deviation = |i: usize| history.loads[i * axles + k] - history.static_loads[k];
-        let mean = there.iter().map(|&i| deviation(i)).sum::<f64>() / count;
-        let squares = there.iter().map(|&i| deviation(i).powi(2)).sum::<f64>() / count;
-        standard_deviation(mean, squares) / history.static_loads[k]
-    };
-    put(Column::LoadCoefficients, 0, &mut (0..axles).map(coefficient));
+    let there = history.on_bridge(length);
+    let count = there.clone().count() as f64;
+    put(Column::LoadCoefficients, 0, &mut history.load_coefficients(length).into_iter());
     let lifts = history.lift_offs();
     let of = |k: usize| lifts.iter().filter(move |lift| lift.axle == k);
     put(Column::Aloft, 0, &mut (0..axles).map(|k| of(k).map(|lift| lift.to - lift.from).sum()));
@@ -177,7 +166,7 @@ fn ride(
                 heave.iter().zip(row.iter().skip(2).step_by(3)).map(|(b, a)| b * a).sum()
             };
             let largest = (0..history.len()).fold(0.0_f64, |m, i| m.max(acceleration(i).abs()));
-            let squares: f64 = there.iter().map(|&i| acceleration(i).powi(2)).sum();
+            let squares: f64 = there.clone().map(|i| acceleration(i).powi(2)).sum();
             put(Column::Accelerations, body, &mut std::iter::once(largest));
             put(Column::Vibrations, body, &mut std::iter::once((squares / count).sqrt()));
             body += 1;

@@ -26,7 +26,7 @@ pub enum Column {
     Responses,
     /// Extremes of the axle loads [N].
     Loads,
-    /// Standard deviation of each axle load on the bridge by its static value [-].
+    /// Root mean square of each axle load about its static value, by that value, on the bridge [-].
     LoadCoefficients,
     /// Time each axle was off the road [s].
     Aloft,

@@ -63,13 +63,6 @@ fn extremes<L: Lane>(table: &Table, h: f64, seen: &Seen<L>, row: usize, lane: us
     [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
 }
 
-/// Standard deviation from the means of deviations from some value and of their squares.
-pub fn deviation(mean: f64, squares: f64) -> f64 {
-    let variance = squares - mean * mean;
-    // By rounding only; what is not a number stays so.
-    if variance < 0.0 { 0.0 } else { variance.sqrt() }
-}
-
 /// What samples that march together share.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
@@ -370,8 +363,8 @@ impl Task<'_> {
                 record.numbers[column(Column::Loads) + side * layout.axles + k] = value.get(lane) + 0.0;
                 record.instants[2 * responses + side * layout.axles + k] = at.get(lane) as u32;
             }
-            let [sum, squares] = ride.sums[k].map(|s| s.get(lane) / count);
-            record.numbers[column(Column::LoadCoefficients) + k] = deviation(sum, squares) / static_load;
+            let coefficient = (ride.deviations[k].get(lane) / count).sqrt() / static_load;
+            record.numbers[column(Column::LoadCoefficients) + k] = coefficient;
             record.numbers[column(Column::Aloft) + k] = ride.aloft[k].get(lane) * h;
             record.instants[2 * (responses + layout.axles) + k] = ride.lift_offs[k].get(lane) as u32;
         }

@@ -69,8 +69,8 @@ impl<L: Lane> Watched<L> {
 pub struct Ride<L> {
     /// Extremes of the axle loads.
     pub loads: Vec<Watched<L>>,
-    /// Sums of the deviations of the loads from their static values and of their squares, on the bridge.
-    pub sums: Vec<[L; 2]>,
+    /// Sums of the squares by which the loads differ from their static values, on the bridge.
+    pub deviations: Vec<L>,
     /// Steps off the road.
     pub aloft: Vec<L>,
     /// Times the axle left it.
@@ -89,7 +89,7 @@ impl<L: Lane> Ride<L> {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         Ride {
             loads: vec![Watched::nothing(); axles],
-            sums: vec![[zero; 2]; axles],
+            deviations: vec![zero; axles],
             aloft: vec![zero; axles],
             lift_offs: vec![zero; axles],
             grounded: vec![one; axles],
@@ -117,13 +117,12 @@ impl<L: Lane> Ride<L> {
                 self.loads[k] = watched;
             }
             if counted {
-                let [mut sum, mut squares] = self.sums[k];
+                let mut squares = self.deviations[k];
                 for (_, load) in loads() {
                     let deviation = load - *static_load;
-                    sum = sum + deviation;
                     squares = squares + deviation * deviation;
                 }
-                self.sums[k] = [sum, squares];
+                self.deviations[k] = squares;
             }
             // Most of the time no wheel is off the road.
             if !L::any(!zero.less(least) | self.grounded[k].less(one)) {

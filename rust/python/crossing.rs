@@ -106,6 +106,13 @@ impl Crossing {
         self.outcome.history.static_loads.clone().into_pyarray(py)
     }
 
+    /// Root mean square of each axle load about its static value, by that value.
+    #[getter]
+    fn load_coefficients<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        let length = self.analysis.rows.mesh().length();
+        self.outcome.history.load_coefficients(length).into_pyarray(py)
+    }
+
     #[getter]
     fn step(&self) -> f64 {
         self.outcome.history.step

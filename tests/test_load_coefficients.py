@@ -1,0 +1,64 @@
+"""Load coefficients: about the static load, from the first axle on the bridge to the last off."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import spanwise as sw
+
+BRIDGE = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)
+TRUCK = sw.vehicles.half_car()
+
+
+def by_hand(run: sw.Run) -> np.ndarray:
+    x = np.concatenate([vehicle.axle_positions for vehicle in run.vehicles], axis=1)
+    on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
+    first, last = np.flatnonzero(on)[[0, -1]]
+    parts = run.axle_loads[first : last + 1] / run.static_axle_loads - 1.0
+    return np.asarray(np.sqrt((parts**2).mean(axis=0)))
+
+
+def crossing(speed: float) -> sw.Run:
+    return sw.cross(BRIDGE, TRUCK, speed=speed, road=sw.ISO8608("C", seed=3), damping=0.02)
+
+
+@pytest.mark.parametrize("speed", [10.0, 20.0, 30.0])
+def test_about_the_static_load(speed: float) -> None:
+    run = crossing(speed)
+    assert run.load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
+    # The mean load of a short crossing is not the static one, and about it there is less.
+    x = run.vehicle.axle_positions
+    there = (x[:, 0] >= 0.0) & (x[:, -1] <= 20.0)
+    about_the_mean = run.axle_loads[there].std(axis=0) / run.static_axle_loads
+    assert (run.load_coefficients > about_the_mean).any()
+
+
+def test_several_vehicles_and_all_that_says_it(tmp_path: Path) -> None:
+    passages = [
+        sw.Passage(vehicle=TRUCK, speed=18.0),
+        sw.Passage(vehicle=sw.vehicles.kishan_1973(), speed=22.0, direction="left", entry=0.7),
+    ]
+    road = sw.ISO8608("B", seed=1)
+    run = sw.cross(BRIDGE, passages, road=road, approach=30.0, damping=0.02)
+    assert run.load_coefficients.shape == (4,)
+    assert run.load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
+    run.to_json(tmp_path / "run.json")
+    told = json.loads((tmp_path / "run.json").read_text())["vehicles"]
+    assert [v for each in told for v in each["load_coefficients"]] == run.load_coefficients.tolist()
+    assert "from their static values" in run.summary()
+    with pytest.raises(ValueError, match="read-only"):
+        run.load_coefficients[0] = 0.0
+    given = {"road": road, "approach": 30.0, "damping": 0.02, "samples": 2}
+    found = sw.ensemble(BRIDGE, passages, **given)  # type: ignore[arg-type]
+    assert_array_equal(found.load_coefficients[0], found.run(0).load_coefficients)
+
+
+def test_constant_forces_do_not_vary() -> None:
+    run = sw.cross(BRIDGE, sw.vehicles.flm3(), speed=20.0)
+    assert_array_equal(run.load_coefficients, np.zeros(4))
+    assert "from their static values" not in run.summary()
