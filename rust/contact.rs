@@ -201,6 +201,11 @@ impl<L: Lane> Contact<L> {
         [self.weights.plain, self.suspension.is_some(), has(|s| s.trapezoidal), has(|s| s.damped), elastic, leaf]
     }
 
+    /// Least increment [N].
+    pub fn floor(&self) -> L {
+        self.floor
+    }
+
     /// The suspension in the static state.
     #[inline(always)]
     pub fn at_rest(&self) -> Stroke<L> {

@@ -9,6 +9,7 @@ use crate::motion::{Motion, reasonable};
 use crate::newmark::Coordinate;
 use crate::path::{ModeShapes, Pavement};
 use crate::road::Road;
+use crate::road::datum::Datum;
 use crate::settings::Settings;
 use crate::vehicle::Vehicle;
 
@@ -257,13 +258,28 @@ impl<'a> Course<'a> {
         [first, length + self.wheelbase()]
     }
 
+    /// Where it is after a way from the end at which it enters, seen from the left end of the bridge [m].
+    fn place(&self, way: f64, length: f64) -> f64 {
+        if self.direction == Direction::Right { way } else { length - way }
+    }
+
+    /// The line from which it feels its road: from the start of the approach to the far end of the bridge.
+    fn datum(&self, settings: &Settings, length: f64) -> Datum {
+        self.road.datum(self.place(-settings.approach, length), self.place(length, length))
+    }
+
+    /// How much that line rises per way [-].
+    pub fn grade(&self, settings: &Settings, length: f64) -> f64 {
+        self.direction.sign() * self.datum(settings, length).slope
+    }
+
     /// The road on its way, if that is uneven.
-    pub fn pavement(&self, settings: &Settings, length: f64) -> Option<Pavement<'a>> {
-        let from_left = |way: f64| if self.direction == Direction::Right { way } else { length - way };
+    pub fn pavement(&self, settings: &Settings, length: f64) -> Option<Pavement> {
+        let place = |way: f64| self.place(way, length);
         (!self.road.is_smooth()).then(|| Pavement {
-            road: self.road,
-            start: from_left(-settings.approach),
-            end: from_left(length + self.wheelbase()),
+            road: self.road.off(self.datum(settings, length)),
+            start: place(-settings.approach),
+            end: place(length + self.wheelbase()),
             ramp: settings.ramp,
             direction: self.direction.sign(),
         })

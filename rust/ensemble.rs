@@ -223,7 +223,7 @@ impl Study {
         let advance = (self.settings.approach + length + wheelbase) / steps as f64;
         let beyond = if self.settings.tail > 0.0 { (wheelbase / advance).ceil() as usize + 2 } else { 0 };
         let pavement = Pavement {
-            road: &self.settings.road,
+            road: self.settings.road.off(self.settings.road.datum(-self.settings.approach, length)),
             start: -self.settings.approach,
             end: length + wheelbase,
             ramp: self.settings.ramp,

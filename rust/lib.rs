@@ -36,6 +36,7 @@ pub mod friction;
 pub mod modal;
 pub mod newmark;
 pub mod rig;
+pub mod stand;
 pub mod step;
 
 pub mod motion;

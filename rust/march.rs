@@ -35,12 +35,14 @@ pub struct March<'a> {
 impl<'a> March<'a> {
     /// Ready to start.
     pub fn new(model: &'a ModalBridge, courses: &'a [Course<'a>], settings: &'a Settings, steps: &Steps) -> Self {
+        let length = model.shapes.mesh().length();
         let moving: Vec<Moving<'_>> = courses
             .iter()
             .map(|course| Moving {
                 assembly: course.vehicle.assembly(),
                 propulsion: if course.rolls { Propulsion::Rolling } else { Propulsion::Prescribed },
                 direction: course.direction.sign(),
+                grade: course.grade(settings, length),
             })
             .collect();
         let Settings { beta, gravity, lift_off, .. } = *settings;
@@ -68,7 +70,7 @@ impl<'a> March<'a> {
         March {
             courses,
             settings,
-            length: model.shapes.mesh().length(),
+            length,
             h: steps.h,
             leaves: steps.advance.map(|_| steps.count),
             stepper: Stepper::new(&model.omega, &model.damping, &moving, &scheme),

@@ -106,9 +106,9 @@ pub fn fade(t: f64, ramp: f64) -> [f64; 3] {
 
 /// A road on the way of one vehicle, its unevenness fading in from where the vehicle starts.
 #[derive(Debug, Clone)]
-pub struct Pavement<'a> {
-    /// The road.
-    pub road: &'a Road,
+pub struct Pavement {
+    /// The road off its datum: see [`Road::datum`].
+    pub road: Road,
     /// Where the vehicle's front starts, from the left end of the bridge [m].
     pub start: f64,
     /// From where on it is level, the last axle having left [m].
@@ -153,7 +153,7 @@ impl Share {
     }
 }
 
-impl Pavement<'_> {
+impl Pavement {
     /// What of the road counts at x [m], and where to look for it.
     pub fn share(&self, x: f64) -> (Share, f64) {
         let way = self.direction * (x - self.start);
@@ -190,13 +190,13 @@ pub struct Ground<'a> {
     /// The modes along the bridge.
     pub shapes: &'a ModeShapes,
     /// Roads, vehicle by vehicle.
-    pub pavements: Vec<Option<Pavement<'a>>>,
+    pub pavements: Vec<Option<Pavement>>,
     /// The vehicle of each contact.
     pub vehicle: Vec<usize>,
 }
 
-impl<'a> Ground<'a> {
-    fn pavement(&self, contact: usize) -> Option<&Pavement<'a>> {
+impl Ground<'_> {
+    fn pavement(&self, contact: usize) -> Option<&Pavement> {
         self.pavements[self.vehicle[contact]].as_ref()
     }
 }

@@ -190,6 +190,12 @@ impl<L: Lane> Rig<L> {
         self.rows[element * size..][..size].iter().zip(unloaded)
     }
 
+    /// Shortening of an element.
+    pub fn shortening(&self, element: usize, coordinates: &[L]) -> L {
+        let rows = self.rows[element * self.size..][..self.size].iter().zip(coordinates);
+        rows.fold(L::splat(0.0), |sum, (row, q)| sum + *row * *q)
+    }
+
     /// Accelerations of element i under unit forces of all elements.
     pub fn coupling(&self, i: usize) -> &[L] {
         &self.coupling[i * self.elements..(i + 1) * self.elements]

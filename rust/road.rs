@@ -2,8 +2,10 @@
 //!
 //! x runs from the left end of the bridge, negative on the left approach; elevation is positive up. A road is a sum of
 //! [`random`] roads after ISO 8608 ([`spectrum`]), measured [`profile`]s and single [`feature`]s, each averaged over
-//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness.
+//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness. A vehicle feels it from the [`datum`] of its
+//! way.
 
+pub mod datum;
 pub mod feature;
 pub mod fft;
 pub mod golden_car;
@@ -18,6 +20,7 @@ pub mod turn;
 use std::sync::Arc;
 
 use crate::error::{Error, finite};
+use datum::Datum;
 use feature::Feature;
 use profile::Profile;
 use random::Random;
@@ -44,6 +47,8 @@ enum Part {
     Random(Arc<Random>),
     Profile(Arc<Profile>),
     Feature(Arc<Feature>),
+    /// Off which the others are.
+    Datum(Datum),
 }
 
 impl From<Random> for Road {
@@ -94,6 +99,7 @@ impl Road {
                 Part::Random(random) => random.at(x),
                 Part::Profile(profile) => profile.at(x),
                 Part::Feature(feature) => feature.at(x),
+                Part::Datum(datum) => datum.taken_off(x),
             };
             sum.elevation += point.elevation;
             sum.slope += point.slope;
@@ -102,12 +108,36 @@ impl Road {
         sum
     }
 
+    /// The line from which a vehicle feels the road that starts at `start` and goes over the bridge as far as `far` [m].
+    ///
+    /// Of a measured profile it is the chord between the two, so that heights above the sea and grades do not count; of a
+    /// feature the level at the start. Random roads are deviations from the line already.
+    pub fn datum(&self, start: f64, far: f64) -> Datum {
+        let ends = self.parts.iter().fold([0.0; 2], |[near, beyond], part| match part {
+            Part::Profile(profile) => [near + profile.at(start).elevation, beyond + profile.at(far).elevation],
+            Part::Feature(feature) => [near, beyond].map(|sum| sum + feature.at(start).elevation),
+            Part::Random(_) | Part::Datum(_) => [near, beyond],
+        });
+        Datum::through([start, ends[0]], [far, ends[1]])
+    }
+
+    /// The road off a line.
+    pub fn off(&self, datum: Datum) -> Self {
+        let mut parts = self.parts.clone();
+        if !datum.is_zero() {
+            // What is random stays last in the sum.
+            let place = parts.iter().position(|part| matches!(part, Part::Random(_))).unwrap_or(parts.len());
+            parts.insert(place, Part::Datum(datum));
+        }
+        Road { parts }
+    }
+
     /// How smooth the surface is, averaged over contact patches: −1 if its elevation jumps anywhere, 0 if its slope
     /// does, 1 or more if neither.
     pub fn smoothness(&self) -> i32 {
         self.parts.iter().fold(2, |least, part| match part {
             Part::Feature(feature) => least.min(feature.smoothness()),
-            Part::Random(_) | Part::Profile(_) => least,
+            Part::Random(_) | Part::Profile(_) | Part::Datum(_) => least,
         })
     }
 
@@ -115,7 +145,7 @@ impl Road {
     pub fn finest(&self) -> f64 {
         self.parts.iter().fold(f64::INFINITY, |least, part| match part {
             Part::Feature(feature) => least.min(feature.finest()),
-            Part::Random(_) | Part::Profile(_) => least,
+            Part::Random(_) | Part::Profile(_) | Part::Datum(_) => least,
         })
     }
 

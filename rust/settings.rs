@@ -22,7 +22,8 @@ pub struct Settings {
     pub step: Option<f64>,
     /// Approach in front of the bridge [m].
     pub approach: f64,
-    /// Way from the start of the approach on which the road's unevenness fades in [m].
+    /// Way from the start of the approach on which the road's unevenness fades in [m]; without, vehicles start at rest on
+    /// the road under their wheels.
     pub ramp: f64,
     /// Free vibration kept after the last axle has left, or the last vehicle has stopped [s].
     pub tail: f64,

@@ -13,6 +13,7 @@ use crate::lane::Lane;
 use crate::modal::{ModalDamping, ModalSolve};
 use crate::newmark::{Coordinate, Newmark};
 use crate::rig::Rig;
+use crate::stand::{Stand, Stood};
 
 /// Most passes in which axle positions and surge follow the corrected state; one or two are usual.
 const PASSES: usize = 50;
@@ -27,7 +28,7 @@ const SURGE_SETTLED_BY_RATES: f64 = 1e-8;
 /// The road under a wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface<L> {
-    /// Elevation, up [m].
+    /// Elevation, up, from the line that all vertical motion of the vehicle is counted from [m].
     pub elevation: L,
     /// Its first derivative along the bridge [-].
     pub slope: L,
@@ -126,6 +127,8 @@ pub struct Moving<'a> {
     pub propulsion: Propulsion,
     /// +1 if it travels to the right, −1 to the left.
     pub direction: f64,
+    /// How much the line that elevations are counted from rises on its way [-]: it slows what rolls freely.
+    pub grade: f64,
 }
 
 /// A vehicle's part in the step.
@@ -142,6 +145,10 @@ struct Unit<L> {
     positions: Vec<L>,
     /// Mass that rests on each contact [kg].
     shares: Vec<L>,
+    /// Acceleration by its weight down the grade, in its direction [m/s²].
+    pull: L,
+    /// How it stands still, where a step takes no time.
+    stand: Option<Stand<L>>,
     brakes: Option<Brakes<L>>,
 }
 
@@ -455,6 +462,8 @@ impl<L: Lane> Stepper<L> {
                 coordinates: coordinate..coordinate + q,
                 positions: assembly.contacts.iter().map(|c| L::splat(c.position)).collect(),
                 shares: assembly.contacts.iter().map(|c| L::splat(c.share)).collect(),
+                pull: L::splat(-gravity * vehicle.grade),
+                stand: (h == 0.0 && q > 0).then(|| Stand::new(assembly, gravity, !lift_off)),
                 brakes: None,
             });
             (contact, rubbing, coordinate) = (contact + c, rubbing + r, coordinate + q);
@@ -523,10 +532,11 @@ impl<L: Lane> Stepper<L> {
         }
     }
 
-    /// Static equilibrium with the contacts where `geometry` has them, the bridge at rest, each vehicle at its speed.
+    /// Static equilibrium with the contacts where `geometry` has them, on the road there and with the friction of the
+    /// static state, the bridge at rest and straight, each vehicle at its speed.
     ///
-    /// An axle that stands on the bridge at the start loads it suddenly, as does one on a road that is not level there;
-    /// the first accelerations say so. To find them this stepper must have been made for steps of zero length.
+    /// An axle that stands on the bridge at the start loads it suddenly, as a slope of the road does a damped tyre; the first
+    /// accelerations say so. To find them this stepper must have been made for steps of zero length.
     #[inline(never)]
     pub fn start(&mut self, speeds: &[L], geometry: &impl Geometry<L>) -> Result<State<L>, Unsettled> {
         let zero = L::splat(0.0);
@@ -543,9 +553,10 @@ impl<L: Lane> Stepper<L> {
         };
         let mut room = self.room.clone();
         let mut desk = room.desk();
+        let stood = self.stand(geometry)?;
         self.predict(form, &state, &mut desk);
         self.push_along(form, &mut state, geometry, &desk);
-        self.react(form, &mut state, geometry, L::never(), None, &mut desk)?;
+        self.begin(form, &mut state, geometry, &stood, &mut desk)?;
         // The loads of the first instant do not depend on how the vehicles surge under them.
         for (u, unit) in self.units.iter_mut().enumerate().filter(|(_, unit)| unit.propulsion == Propulsion::Rolling) {
             let mut force = zero;
@@ -553,16 +564,70 @@ impl<L: Lane> Stepper<L> {
                 state.along[contact] = along(unit, own, contact, &self.elements, &state, geometry);
                 force = force + state.along[contact];
             }
-            state.travel[u].a = force / unit.rig.total_mass;
+            state.travel[u].a = force / unit.rig.total_mass + unit.pull;
             let bodies = &desk.bodies[unit.coordinates.clone()];
             unit.rig.surge(&self.newmark, bodies, &state.along[unit.contacts.clone()]);
         }
-        self.react(form, &mut state, geometry, L::never(), None, &mut desk)?;
+        self.begin(form, &mut state, geometry, &stood, &mut desk)?;
         for ((stroke, contact), delta) in state.strokes.iter_mut().zip(&self.elements.contacts).zip(&*desk.offset) {
             *stroke = contact.at_onset(*delta);
         }
+        for (unit, stood) in self.units.iter().zip(stood) {
+            let Some(stood) = stood else { continue };
+            for (contact, shortening) in unit.contacts.clone().zip(stood.shortenings) {
+                state.strokes[contact].shortening = shortening;
+            }
+            for (own, rubbing) in (unit.contacts.len()..).zip(unit.rubbing.clone()) {
+                state.strokes[rubbing].shortening = unit.rig.shortening(own, &stood.coordinates);
+            }
+            for (coordinate, stood) in state.coordinates[unit.coordinates.clone()].iter_mut().zip(stood.coordinates) {
+                coordinate.x = stood;
+            }
+        }
         state.along_before.copy_from_slice(&state.along);
         Ok(state)
+    }
+
+    /// How each vehicle stands where `geometry` has its contacts; nothing of one on level ground, or that has nothing to
+    /// settle.
+    fn stand(&self, geometry: &impl Geometry<L>) -> Result<Vec<Option<Stood<L>>>, Unsettled> {
+        let zero = L::splat(0.0);
+        let of = |unit: &Unit<L>| {
+            let Some(stand) = &unit.stand else { return Ok(None) };
+            let elevations: Vec<L> = unit.contacts.clone().map(|k| geometry.surface(k).elevation).collect();
+            if !elevations.iter().any(|r| L::any(r.less(zero) | zero.less(*r))) {
+                return Ok(None);
+            }
+            stand.on(&elevations).map(Some).ok_or(Unsettled::ContactForces)
+        };
+        self.units.iter().map(of).collect()
+    }
+
+    /// Forces and accelerations of the first instant: what moves the vehicles out of the equilibrium in which they stand.
+    fn begin(
+        &mut self,
+        form: Form,
+        state: &mut State<L>,
+        geometry: &impl Geometry<L>,
+        stood: &[Option<Stood<L>>],
+        desk: &mut Desk<'_, L>,
+    ) -> Result<(), Unsettled> {
+        self.feel(form, geometry, None, desk);
+        let wheels = self.elements.contacts.iter().enumerate().filter(|(_, contact)| !contact.constant);
+        for (k, contact) in wheels {
+            desk.offset[k] = desk.offset[k] - contact.weights.value * geometry.surface(k).elevation;
+        }
+        self.answer(form, state, L::never(), desk)?;
+        let receptance = Coupling::of(form, desk.coupling).receptance;
+        for (unit, stood) in self.units.iter().zip(stood) {
+            for (k, load) in unit.contacts.clone().zip(stood.iter().flat_map(|stood| &stood.loads)) {
+                state.increments[k] = self.elements.contacts[k].floor().larger(state.increments[k] + *load);
+                for (m, mode) in state.modes.iter_mut().enumerate() {
+                    mode.a = mode.a + receptance[k * form.modes + m] * *load;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// From one stepper for each sample, of the same vehicles, modes and scheme but for their numbers.
@@ -582,6 +647,11 @@ impl<L: Lane> Stepper<L> {
                 coordinates: unit.coordinates.clone(),
                 positions: vector(&|unit| &unit.positions),
                 shares: vector(&|unit| &unit.shares),
+                pull: L::from_fn(|s| each[s].units[u].pull),
+                stand: unit
+                    .stand
+                    .is_some()
+                    .then(|| Stand::gather(&each.iter().filter_map(|s| s.units[u].stand.as_ref()).collect::<Vec<_>>())),
                 brakes: None,
             }
         });
@@ -728,7 +798,7 @@ impl<L: Lane> Stepper<L> {
                 let coordinates = unit.coordinates.clone();
                 Rig::guess(&self.newmark, &desk.bodies[coordinates.clone()], &state.coordinates[coordinates], guess);
                 let force = unit.contacts.clone().fold(L::splat(0.0), |sum, contact| sum + state.along[contact]);
-                let travel = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
+                let travel = self.newmark.correct(self.travel[u], force / unit.rig.total_mass + unit.pull);
                 place(unit, travel, guess, geometry, true);
             }
         }
@@ -748,7 +818,7 @@ impl<L: Lane> Stepper<L> {
                     force = force + next;
                     self.along[contact] = next;
                 }
-                state.travel[u] = self.newmark.correct(self.travel[u], force / unit.rig.total_mass);
+                state.travel[u] = self.newmark.correct(self.travel[u], force / unit.rig.total_mass + unit.pull);
                 let coordinates = &state.coordinates[unit.coordinates.clone()];
                 moving = moving | place(unit, state.travel[u], coordinates, geometry, false);
                 moving = moving | !change.less(self.surge_settled * unit.rig.total_mass);
@@ -823,6 +893,13 @@ impl<L: Lane> Stepper<L> {
         known: Option<&[f64]>,
         desk: &mut Desk<'_, L>,
     ) -> Result<(), Unsettled> {
+        self.feel(form, geometry, known, desk);
+        self.answer(form, state, frozen, desk)
+    }
+
+    /// What the elements follow without the increments of the forces, and how those are coupled.
+    #[inline(always)]
+    fn feel(&self, form: Form, geometry: &impl Geometry<L>, known: Option<&[f64]>, desk: &mut Desk<'_, L>) {
         match known {
             _ if form.modes == 0 => desk.coupling[..form.width()].copy_from_slice(&self.alone[..form.width()]),
             Some(numbers) => {
@@ -834,6 +911,17 @@ impl<L: Lane> Stepper<L> {
         }
         self.sense(form, geometry, desk);
         self.sit(form, desk);
+    }
+
+    /// Solves for the increments and moves bridge and vehicles under them, in lanes that are not `frozen`.
+    #[inline(always)]
+    fn answer(
+        &self,
+        form: Form,
+        state: &mut State<L>,
+        frozen: L::Mask,
+        desk: &mut Desk<'_, L>,
+    ) -> Result<(), Unsettled> {
         let Coupling { compliance, held, receptance, .. } = Coupling::of(form, desk.coupling);
         let (prepared, strokes) = (&mut *desk.prepared, &state.strokes);
         self.elements.prepare(form.elements, held, strokes, prepared);

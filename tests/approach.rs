@@ -59,7 +59,7 @@ impl Geometry<f64> for Approach {
 fn march(vehicle: &Vehicle, omega: &[f64], steady: bool) -> Vec<State<f64>> {
     let stepper = |h: f64| {
         let assembly = vehicle.assembly();
-        let moving = [Moving { assembly, propulsion: Propulsion::Prescribed, direction: 1.0 }];
+        let moving = [Moving { assembly, propulsion: Propulsion::Prescribed, direction: 1.0, grade: 0.0 }];
         let damping = ModalDamping::Classical(vec![0.02; omega.len()]);
         Stepper::<f64>::new(omega, &damping, &moving, &Scheme { h, beta: 0.25, gravity: 9.81, lift_off: true })
     };

@@ -364,7 +364,7 @@ fn load_transfer_through_a_hinge() {
     }
 }
 
-/// A vehicle that begins on a slope rolls down it from the first instant.
+/// A vehicle that begins on a slope rolls down it from the first instant, at rest on its springs.
 #[test]
 fn the_first_instant_on_a_slope() {
     let vehicle = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
@@ -378,12 +378,20 @@ fn the_first_instant_on_a_slope() {
         let passage = Passage { direction, ..Passage::of(vehicle.clone()) };
         let run = run_all(&bridge(1.0), &[passage], &settings, 3, &damping(), ForceSummation, &[0.5 * SPAN]).unwrap();
         let row = run.rows().next().unwrap();
+        let start = row.positions[0];
+        let datum = road.datum(start, if direction == Direction::Right { SPAN } else { 0.0 });
+        let road = road.off(datum);
+        let weight: f64 = run.outcome.history.static_loads.iter().sum();
+        let pulled = -direction.sign() * weight * datum.slope;
         let pushed: f64 =
             (0..2).map(|k| -direction.sign() * row.loads[k] * road.at(row.positions[k]).slope).sum::<f64>();
         let all = motion(&run, 0, 0);
-        println!("{direction:?}: {:.3e} m/s², by hand {:.3e}", all[4][2], pushed / vehicle.mass());
-        assert!((vehicle.mass() * all[4][2] - pushed).abs() <= ROUNDING * pushed.abs() && pushed < -1.0);
-        // And it pitches: J θ̈ = −h Σ H of the body, the springs still at rest.
+        println!("{direction:?}: {:.3e} m/s², by hand {:.3e}", all[4][2], (pushed + pulled) / vehicle.mass());
+        assert!((vehicle.mass() * all[4][2] - pushed - pulled).abs() <= ROUNDING * pushed.abs() && pushed < -1.0);
+        for (load, at_rest) in row.loads.iter().zip(&run.outcome.history.static_loads) {
+            assert!((load - at_rest).abs() <= ROUNDING * at_rest, "{load} N for {at_rest} N");
+        }
+        // And it pitches: J θ̈ = −h Σ H of the body, the springs at rest; weight pulls at the centres of mass.
         let body = 1.4 * 16_200.0 / vehicle.mass();
         let inertia = 93_457.0 + 1.4 * 1.4 * 16_200.0 * 1800.0 / vehicle.mass();
         assert!((inertia * all[1][2] + body * pushed).abs() <= ROUNDING * pushed.abs(), "{}", all[1][2]);

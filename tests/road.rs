@@ -595,6 +595,53 @@ fn detrending_takes_off_the_least_squares_line() {
     assert!(residual.iter().zip(&x).map(|(r, x)| r * x).sum::<f64>().abs() < 1e-9);
 }
 
+// The datum.
+
+/// Off its datum a profile is the same at any height and on any grade, but for the rounding of its elevations.
+#[test]
+fn heights_and_grades_go_with_the_datum() {
+    let x = grid(-30.0, 40.0, 0.25);
+    let wave = |x: f64| 0.004 * (0.9 * x).sin() + 0.002 * (2.3 * x).cos();
+    for contact_patch in [0.0, PATCH] {
+        let off = |height: f64, grade: f64, [start, far]: [f64; 2]| {
+            let road = profile(&x, |x| wave(x) + height + grade * x, contact_patch);
+            road.off(road.datum(start, far))
+        };
+        for ends in [[-20.0, 30.0], [35.0, 0.0]] {
+            let plain = off(0.0, 0.0, ends);
+            assert!(ends.iter().all(|&end| plain.at(end).elevation.abs() < 1e-16));
+            for (height, grade) in [(500.0, 0.0), (0.0, 0.06), (-80.0, -0.1)] {
+                let other = off(height, grade, ends);
+                for x in grid(-29.0, 39.0, 0.0713) {
+                    let (one, its) = (plain.at(x), other.at(x));
+                    assert!((one.elevation - its.elevation).abs() < 1e-12, "{height} m, {grade}, at {x} m");
+                    assert!((one.slope - its.slope).abs() < 1e-11 && (one.curvature - its.curvature).abs() < 1e-10);
+                }
+            }
+        }
+    }
+}
+
+/// Of features the level at the start goes, of random roads nothing; of a sum all that goes of its parts.
+#[test]
+fn the_datum_of_a_sum_is_the_sum() {
+    let step = |at: f64| Road::from(Feature::step(at, 0.3, patch(PATCH)).unwrap());
+    let random = random(0.0, 1, 0);
+    let measured = profile(&grid(-30.0, 40.0, 0.5), |x| 3.0 + 0.02 * x, 0.0);
+    assert!(random.datum(-20.0, 30.0).is_zero() && step(0.0).datum(-20.0, 30.0).is_zero());
+    assert!(Road::smooth().off(Road::smooth().datum(-20.0, 30.0)).is_smooth());
+    let off = |road: &Road| road.off(road.datum(-20.0, 30.0)).at(7.0).elevation;
+    assert!(off(&step(-90.0)).abs() < 1e-13);
+    assert!((off(&step(0.0)) - 0.3).abs() < 1e-13);
+    let both = Road::sum([random.clone(), step(-90.0), step(2.0), measured]);
+    assert!((off(&both) - 0.3 - random.at(7.0).elevation).abs() < 1e-13);
+    assert!((both.datum(-20.0, 30.0).slope - 0.02).abs() < 1e-15);
+    // Nothing else of the road is another.
+    let felt = both.off(both.datum(-20.0, 30.0));
+    assert_eq!((felt.ends(), felt.period()), (both.ends(), both.period()));
+    assert_eq!((felt.finest(), felt.smoothness()), (both.finest(), both.smoothness()));
+}
+
 // Golden car.
 
 /// Transfer function from the slope of the road to that between body and axle, at a wave number [cycle/m].

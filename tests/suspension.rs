@@ -29,6 +29,7 @@ const TYRE: f64 = 1.75e6;
 const SPRING: f64 = 4e5;
 const SPEED: f64 = 20.0;
 const APPROACH: f64 = 20.0;
+const SPAN: f64 = 10.0;
 
 fn quarter_car(tyre_damping: f64, suspension_damping: f64, friction: Friction) -> Vehicle {
     let axle = Axle { tyre_damping, suspension_damping, friction, ..Axle::new(0.0, TYRE, SPRING) };
@@ -44,7 +45,7 @@ fn rise(x: f64) -> f64 {
 /// Bounce, its rate and the shortening after 18 m, all on the approach, in so many steps to a metre.
 fn crossed(vehicle: &Vehicle, road: &Road, per_metre: usize) -> Vec<f64> {
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[10.0], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     let settings = Settings {
         approach: APPROACH,
         road: Arc::new(road.clone()),
@@ -61,13 +62,15 @@ fn crossed(vehicle: &Vehicle, road: &Road, per_metre: usize) -> Vec<f64> {
 
 /// The same without friction, from m z̈ = −p, p = k_t(d − s) + c_t(ḋ − ṡ) = k_s s + c_s ṡ.
 fn by_runge_kutta(tyre_damping: f64, suspension_damping: f64, road: &Road) -> Vec<f64> {
+    let road = road.off(road.datum(-APPROACH, SPAN));
     let slopes = |t: f64, y: &[f64]| {
         let point = road.at(SPEED * t - APPROACH);
         let (d, rate) = (y[0] + point.elevation, y[1] + SPEED * point.slope);
         let s_dot = (TYRE * (d - y[2]) + tyre_damping * rate - SPRING * y[2]) / (tyre_damping + suspension_damping);
         vec![y[1], -(SPRING * y[2] + suspension_damping * s_dot) / MASS, s_dot]
     };
-    let mut y = vec![0.0; 3];
+    // It starts at rest on the road there.
+    let mut y = vec![-road.at(-APPROACH).elevation, 0.0, 0.0];
     let n = 36_000;
     let h = 18.0 / SPEED / f64::from(n);
     for i in 0..n {
@@ -106,9 +109,10 @@ fn dampers_that_begin_on_a_slope() {
 /// Damped or not, a suspension begins with the friction it has in the static state.
 #[test]
 fn dampers_keep_the_initial_friction() {
-    let road = profile([-30.0, 20.0], rise);
+    // As low at the far end of the bridge as at the start, so that it is level until the rise.
+    let road = profile([-30.0, 20.0], |x| rise(x) - rise(x - 15.0));
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[10.0], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     let settings = Settings { approach: APPROACH, road: Arc::new(road), ..Settings::at_speed(SPEED) };
     for damper in [0.0, 4e4] {
         for friction in [Friction::coulomb(3e3), leaf(3e3, 1e-3)] {
@@ -155,7 +159,7 @@ fn a_step_in_the_road() {
     use spanwise::road::patch::Patch;
     let step: Road = Feature::step(-10.0, 0.005, Patch::new(0.0).unwrap()).unwrap().into();
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[10.0], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     for damper in [0.0, 4e4] {
         let jumps = [2e-4, 1e-4, 5e-5].map(|h| {
             let settings = Settings {

@@ -75,7 +75,7 @@ def cross(
         Length of the rigid approach [m]: by default none on a smooth road, 100 m on another.
     ramp : float, optional
         Way on which the unevenness fades in at the start of the approach [m]; by default 20 m, or
-        the approach if that is shorter.
+        the approach if that is shorter. With 0 the vehicle starts at rest on the road it stands on.
     tail : float, optional
         Free vibration kept after the last axle has left [s]. The maxima can lie in it.
     sections : sequence of float, optional
@@ -125,6 +125,12 @@ def cross(
 
     Notes
     -----
+    What of a road moves a vehicle up and down is what it is off a straight line, the datum of its
+    way: of a `Profile` the chord between the start of the approach and the far end of the bridge,
+    of single features the level at that start; random roads count as they are. So neither the
+    height of a profile above the sea nor a grade changes anything at a prescribed speed. What rolls
+    freely is slowed or pushed by the grade from the start, by g times its rise.
+
     An axle that drives on to a *free* end of the bridge loads it suddenly with all it carries, and
     its wheel drops off the deflected end as it leaves. The bridge rings from that at any speed, so
     there impact factors do not tend to one as the speed goes down.

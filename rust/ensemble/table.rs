@@ -6,7 +6,6 @@ use super::look::Look;
 use crate::influence::{Quantity, Responses};
 use crate::path::{ModeShapes, Pavement, Share};
 use crate::recovery::{Place, Rows};
-use crate::road::Road;
 use crate::road::random::Synthesis;
 use crate::road::spline::Taps;
 use crate::step::Surface;
@@ -141,7 +140,7 @@ pub struct Table {
 #[derive(Debug, Clone, Copy)]
 pub struct Ground<'a> {
     /// What all share, on its way.
-    pub pavement: &'a Pavement<'a>,
+    pub pavement: &'a Pavement,
     /// What the samples' own roads have in common.
     pub own: Option<&'a Synthesis>,
 }
@@ -153,8 +152,7 @@ impl Ground<'_> {
         if share == Share::Level {
             return Below::Given(Surface::LEVEL);
         }
-        let road: &Road = self.pavement.road;
-        let given = road.at(x);
+        let given = self.pavement.road.at(x);
         let taps = Taps::new(x, own.points(), own.period());
         Below::Own { given: [given.elevation, given.slope, given.curvature], taps, share }
     }

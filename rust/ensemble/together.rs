@@ -146,7 +146,8 @@ impl Task<'_> {
         let model = &self.study.analysis.model;
         let scaled = Scaled::of(model, self.samples, sample);
         let there = scaled.as_ref().map_or((&model.omega[..], &model.damping), |s| (&s.omega, &s.damping));
-        let moving = [Moving { assembly: vehicle.assembly(), propulsion: Propulsion::Prescribed, direction: 1.0 }];
+        let (assembly, propulsion) = (vehicle.assembly(), Propulsion::Prescribed);
+        let moving = [Moving { assembly, propulsion, direction: 1.0, grade: 0.0 }];
         let Settings { beta, gravity, lift_off, .. } = self.study.settings;
         let stepper = |(omega, damping): (&[f64], &ModalDamping), h: f64| {
             Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })

@@ -19,6 +19,8 @@ const GAP: f64 = 5.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     x: Vec<f64>,
+    /// Elevation of the first point [m], which all others are counted from: digits that a height above the sea would take.
+    base: f64,
     /// The cubic from each point to the next in powers of the distance from the point [m].
     cubics: Vec<[f64; 4]>,
     /// Integral of the elevation from the first point to each [m²].
@@ -40,6 +42,8 @@ impl Profile {
         if detrend {
             take_off_line(&x, &mut elevation);
         }
+        let base = elevation[0];
+        elevation.iter_mut().for_each(|r| *r -= base);
         let cubics = spline(&x, &elevation);
         let mut integrals = vec![0.0];
         for (piece, [a, b, c, d]) in x.windows(2).zip(&cubics) {
@@ -47,7 +51,7 @@ impl Profile {
             let area = h * (a + h * (b / 2.0 + h * (c / 3.0 + h * d / 4.0)));
             integrals.push(integrals[integrals.len() - 1] + area);
         }
-        Ok(Profile { x, cubics, integrals, patch })
+        Ok(Profile { x, base, cubics, integrals, patch })
     }
 
     /// First and last x [m].
@@ -57,10 +61,11 @@ impl Profile {
 
     /// Elevation, slope and curvature at x, averaged over the contact patch.
     pub fn at(&self, x: f64) -> Point {
-        self.patch.average(|x| self.curve(x), x)
+        let point = self.patch.average(|x| self.curve(x), x);
+        Point { elevation: point.elevation + self.base, ..point }
     }
 
-    /// The spline; beyond its ends, where half a contact patch may reach, its tangents.
+    /// The spline above the first point; beyond its ends, where half a contact patch may reach, its tangents.
     fn curve(&self, x: f64) -> Curve {
         let [first, last] = self.ends();
         let inside = x.clamp(first, last);

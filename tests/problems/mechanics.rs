@@ -138,6 +138,11 @@ impl Budget {
         let mass = if rolls { &assembly.mass + &assembly.surge_mass } else { assembly.mass.clone() };
         let n = mass.nrows();
         let direction = history.vehicles[0].direction;
+        // The road off its datum, against whose rise the weight of what rolls works.
+        let far = if direction > 0.0 { run.bridge.length() } else { 0.0 };
+        let datum = road.datum(history.positions[0], far);
+        let road = road.off(datum);
+        let weight = history.static_loads.iter().sum::<f64>();
         let mut budget = Budget { stored: vec![], driven: vec![], damped: vec![], rubbed: vec![] };
         let (mut powers, mut strokes): (Vec<[f64; 2]>, Vec<Vec<[f64; 2]>>) = (vec![], vec![]);
         for (i, row) in run.rows().enumerate() {
@@ -149,7 +154,7 @@ impl Budget {
             let mut damped = (&assembly.damping * &v).dot(&v);
             let mut driven = 0.0;
             if rolls {
-                stored += 0.5 * vehicle.mass() * speed * speed;
+                stored += 0.5 * vehicle.mass() * speed * speed + weight * direction * datum.slope * all[n][0];
             }
             for ((a, a_dot), w) in row.a.iter().zip(row.a_dot).zip(&shapes.omega) {
                 stored += 0.5 * (a_dot * a_dot + w * w * a * a);

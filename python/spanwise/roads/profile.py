@@ -60,6 +60,10 @@ class Profile(Road):
     which flatten them. Its third derivative is continuous at the second point and the last but one
     ("not a knot"). The road is known from the first point to the last. Where half a contact patch
     reaches beyond, the tangent at the end goes on.
+
+    In a crossing neither the height above the sea nor the grade counts for vertical motion: that is
+    counted from the chord of the profile between the start of the approach and the far end of the
+    bridge. `detrend` is for what else is made of the elevations.
     """
 
     kind: ClassVar[str] = "profile"
