@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Literal, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import as_array, flag, number, numbers, pairs, shown, word
-from spanwise._keys import suggestion
+from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
 from spanwise._warnings import PlausibilityWarning
 from spanwise.roads._doubts import doubts
 from spanwise.roads.base import CONTACT_PATCH, Road
+from spanwise.roads.reading import read_points
+from spanwise.roads.sheet import Column
 
 Array: TypeAlias = NDArray[np.float64]
 
-#: Number or name of a column.
-Column: TypeAlias = int | str
+#: What may become of points with the same x.
+_DUPLICATES: Final = ("refuse", "mean", "first", "last")
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -105,38 +105,55 @@ class Profile(Road):
         )
 
     @classmethod
-    def read_csv(
+    def read(
         cls,
         path: str | Path,
         *,
-        columns: tuple[Column, Column] = (0, 1),
-        delimiter: str = ",",
-        scale: tuple[float, float] = (1.0, 1.0),
+        columns: Sequence[Column] | Column | None = None,
+        spacing: float | None = None,
+        start: float | None = None,
+        delimiter: str | None = None,
+        decimal: Literal[".", ","] | None = None,
+        scale: tuple[float, float] | None = None,
         sort: bool = False,
-        duplicates: Literal["refuse", "mean"] = "refuse",
+        duplicates: Literal["refuse", "mean", "first", "last"] = "refuse",
         detrend: bool = False,
         contact_patch: float = CONTACT_PATCH,
         max_gap: float | None = None,
     ) -> Profile:
-        """A profile from a file of separated values.
+        """A profile from a file: a table of numbers as text, or an ERD file.
 
         Parameters
         ----------
         path : str or Path
-            The file, UTF-8 text. Empty lines and lines that begin with ``#`` are passed over, and
-            so is the first line if it holds names.
-        columns : tuple of int or str, optional
-            Numbers, from 0, or names of the columns with x and elevation.
+            The file, of at most 128 MiB; UTF-8, UTF-16 or Windows-1252. Empty lines and lines that
+            begin with ``#`` are passed over, and so is a head of lines without numbers: titles,
+            names of the columns, units.
+        columns : list of int or str, or one of them, optional
+            Numbers, from 0, or names of the columns with x and elevation, or with elevation alone
+            beside `spacing` and in ERD files with a step. Of several elevations, such as left and
+            right track, the mean is taken. Without, the first two, or the only elevation.
+        spacing : float, optional
+            Distance of the points [m], where no column has x.
+        start : float, optional
+            x of the first point [m], for a file that counts from elsewhere than the left end of
+            the bridge; without, as the file has it, or 0 beside `spacing`.
         delimiter : str, optional
-            What separates the columns.
+            What separates the columns; a blank stands for any number of blanks. Without, what
+            the file suggests.
+        decimal : {".", ","}, optional
+            The decimal mark; without, what the file suggests. Whole numbers may be in groups of
+            three, and stations as ``1+234.5`` or ``12+34.5``.
         scale : tuple of float, optional
             What x and elevation are multiplied by to give metres, such as ``(1.0, 1e-3)`` for
-            elevations in millimetres.
+            elevations in millimetres. Without, by the units that the file names: those of an ERD
+            file, a line of units, or units in brackets with the names.
         sort : bool, optional
-            Whether to bring the points into the order of x.
-        duplicates : {"refuse", "mean"}, optional
-            What becomes of neighbouring points with the same x: the mean of their elevations, or
-            an error.
+            Whether to bring the points into the order of x. Where x falls from point to point,
+            that is done anyway.
+        duplicates : {"refuse", "mean", "first", "last"}, optional
+            What becomes of neighbouring points with the same x: an error, the mean of their
+            elevations, or that of the first or last in the file.
         detrend, contact_patch, max_gap
             As for `Profile`.
 
@@ -151,27 +168,31 @@ class Profile(Road):
         -----
         PlausibilityWarning
             As for `Profile`.
+
+        References
+        ----------
+        University of Michigan Transportation Research Institute, "The ERD file specification".
         """
-        factors = numbers("scale", scale)
-        if len(factors) != 2:
-            raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
-        if word("duplicates", duplicates) not in ("refuse", "mean"):
-            raise ValueError(f"duplicates = {shown(duplicates)}: must be refuse or mean")
-        rows = list(_rows(Path(path), columns, delimiter))
-        x, elevations, lines = np.array(rows, dtype=float).reshape(-1, 3).T
-        x, elevations = factors[0] * x, factors[1] * elevations
-        if flag("sort", sort):
+        kept = choice("duplicates", duplicates, _DUPLICATES)
+        offset = None if start is None else finite("start", start)
+        is_sorted = flag("sort", sort)
+        path = file_path("path", path)
+        x, elevations, lines = read_points(path, columns, spacing, delimiter, decimal, scale)
+        steps = np.diff(x)
+        if is_sorted or (np.all(steps <= 0.0) and np.any(steps < 0.0)):
             order = np.argsort(x, kind="stable")
             x, elevations, lines = x[order], elevations[order], lines[order]
-        if duplicates == "mean" and len(x):
-            first = np.append(True, np.diff(x) != 0.0)
-            group = np.cumsum(first) - 1
-            elevations = np.bincount(group, elevations) / np.bincount(group)
-            x, lines = x[first], lines[first]
+        if kept != "refuse" and len(x):
+            x, elevations, lines = _merged(x, elevations, lines, kept)
+        if offset is not None and len(x):
+            x = x + (offset - x[0])
         try:
             return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
         except ValueError as error:
-            raise ValueError(_in_file(str(error), Path(path), x, lines)) from None
+            raise ValueError(_in_file(str(error), path, x, lines)) from None
+
+    #: The name it had when it read tables only.
+    read_csv = read
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Profile):
@@ -204,6 +225,18 @@ def _column(key: str, value: ArrayLike) -> Array:
     return values
 
 
+def _merged(x: Array, elevations: Array, lines: Array, kept: str) -> tuple[Array, Array, Array]:
+    """One point of all neighbours with the same x; they are in the order of the file."""
+    first = np.append(True, np.diff(x) != 0.0)
+    firsts = np.flatnonzero(first)
+    if kept == "mean":
+        group = np.cumsum(first) - 1
+        means = np.bincount(group, elevations) / np.bincount(group)
+        return x[firsts], means, lines[firsts]
+    one = firsts if kept == "first" else np.append(firsts[1:], len(x)) - 1
+    return x[one], elevations[one], lines[one]
+
+
 def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
     """What is wrong with a profile, with the line of the file and what may mend it."""
     found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
@@ -214,80 +247,7 @@ def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
     point = int(found[2])
     where = f"{path}, line {lines[point]:.0f}: {message}"
     if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
-        return f'{where}; duplicates = "mean" takes the mean of both'
+        return f"{where}; duplicates = mean, first or last takes one elevation there"
     if found[1] == "x" and point > 0 and x[point] < x[point - 1]:
-        return f"{where}; sort = true sorts the points"
+        return f"{where}; sort brings the points into the order of x"
     return where
-
-
-def _rows(path: Path, columns: object, delimiter: object) -> Iterator[tuple[float, float, int]]:
-    """x and elevation of each line, and its number."""
-    wanted = pairs("columns", [columns])[0]
-    text = word("delimiter", delimiter)
-    if len(text) != 1:
-        raise ValueError(f"delimiter = {shown(delimiter)}: must be one character")
-    places: tuple[int, int] | None = None
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        reader = csv.reader(file, delimiter=text)
-        try:
-            for row in reader:
-                cells = [cell.strip() for cell in row]
-                if not any(cells) or cells[0].startswith("#"):
-                    continue
-                where = f"{path}, line {reader.line_num}"
-                if places is None:
-                    names = not any(map(_is_number, cells))
-                    places = _places(wanted, cells if names else None, where)
-                    if names:
-                        continue
-                x, elevation = (_number(cells, place, where) for place in places)
-                yield x, elevation, reader.line_num
-        except (csv.Error, UnicodeDecodeError) as error:
-            raise ValueError(f"{path}: not a file of separated values: {error}") from None
-
-
-def _places(wanted: tuple[object, object], names: list[str] | None, where: str) -> tuple[int, int]:
-    """Numbers of both columns."""
-    found = []
-    for k, column in enumerate(wanted):
-        key = f"columns[{k}] = {shown(column)}"
-        if isinstance(column, str):
-            if names is None:
-                raise ValueError(f"{where}: {key}: the file has no line of names; give a number")
-            if column not in names:
-                allowed = f"must be one of {', '.join(names)}{suggestion(column, names)}"
-                raise ValueError(f"{where}: {key}: {allowed}")
-            found.append(names.index(column))
-        elif isinstance(column, int) and not isinstance(column, bool) and column >= 0:
-            found.append(column)
-        else:
-            raise ValueError(f"{key}: must be a column's name or its number from 0")
-    return found[0], found[1]
-
-
-def _number(cells: list[str], column: int, where: str) -> float:
-    if column >= len(cells):
-        other = next((each for each in (";", "\t", "|", " ") if each in cells[0]), None)
-        hint = "" if other is None else f"; is the delimiter {other!r}?"
-        raise ValueError(
-            f"{where}: {len(cells)} columns, column {column} (from 0) is missing{hint}"
-        )
-    text = cells[column]
-    if not _is_number(text):
-        hint = ""
-        if _is_number(text.replace(",", ".")):
-            hint = "; decimals need a point, not a comma"
-        elif ";" in text or "\t" in text:
-            hint = (
-                f"; is the delimiter {';' if ';' in text else chr(9)!r}, and the decimal a point?"
-            )
-        raise ValueError(f"{where}: {shown(text)} in column {column} is not a number{hint}")
-    return float(text)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

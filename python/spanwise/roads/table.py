@@ -39,7 +39,7 @@ def _profile(**given: Any) -> Road:
     for other in _POINTS.required:
         if other in given:
             raise ValueError(f"{other}: not used with file")
-    return Profile.read_csv(word("file", given.pop("file")), **given)
+    return Profile.read(word("file", given.pop("file")), **given)
 
 
 def _keys(function: Callable[..., Any], *others: str) -> Keys:
@@ -50,7 +50,7 @@ def _keys(function: Callable[..., Any], *others: str) -> Keys:
 
 
 _POINTS: Final = _keys(Profile)
-_FILE: Final = Keys(("file", *_keys(Profile.read_csv).allowed[1:]))
+_FILE: Final = Keys(("file", *_keys(Profile.read).allowed[1:]))
 _ISO: Final = Keys(("class", "iri", *_keys(ISO8608).allowed[1:]))
 _BOTH: Final = Keys((*_POINTS.allowed, *(k for k in _FILE.allowed if k not in _POINTS.allowed)))
 _CONDITION: Final = Keys(
@@ -82,7 +82,7 @@ def from_table(table: Table | list[Table]) -> Road:
         ``"ramp"``, ``"bump"``, ``"pothole"``, ``"joint"`` or ``"camber"``), and beside it the
         arguments of that road: of ``"iso-8608"`` a ``class``, ``G`` or ``iri``, of
         ``"bridge-study"`` a ``condition``, of ``"profile"`` the points or a ``file`` with the
-        arguments of `Profile.read_csv`. A list of tables is the sum of their roads.
+        arguments of `Profile.read`. A list of tables is the sum of their roads.
 
     Returns
     -------

@@ -1,0 +1,230 @@
+"""Points of a profile from a file as people have them: a table of text, or an ERD file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import stat
+from collections.abc import Iterator
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._checks import items, numbers, positive, shown, text
+from spanwise._keys import suggestion
+from spanwise.roads import erd
+from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of
+from spanwise.roads.sniffing import encoding_of, is_number, value_of
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Largest file that is read [bytes].
+MAX_BYTES: Final = 2**27
+
+#: Lines that become numbers at a time.
+_BLOCK: Final = 100_000
+
+#: Most columns that are averaged.
+MOST_COLUMNS: Final = 100
+
+
+def read_points(
+    path: Path, columns: object, spacing: object, delimiter: object, decimal: object, scale: object
+) -> tuple[Array, Array, Array]:
+    """x and elevation [m] of each point and the line it is on, as in the file; see `Profile.read`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If it holds no such points, naming the line, or a value is not allowed.
+    """
+    step = None if spacing is None else positive("spacing", spacing)
+    wanted = _columns(columns)
+    factors = None if scale is None else _factors(scale)
+    mark = None if delimiter is None else _delimiter(delimiter)
+    point = None if decimal is None else text("decimal", decimal)
+    if point not in (None, ".", ","):
+        raise ValueError(f"decimal = {shown(decimal)}: must be . or ,")
+    content = _content(path)
+    try:
+        encoding = encoding_of(content)
+
+        def lines() -> Iterator[str]:
+            return io.TextIOWrapper(io.BytesIO(content), encoding=encoding, newline="")
+
+        if next(lines(), "").startswith(erd.MARK):
+            for key, given in (("spacing", spacing), ("delimiter", mark), ("decimal", point)):
+                if given is not None:
+                    raise ValueError(f"{key} = {shown(given)}: not used with ERD files")
+            sheet = erd_of(lines)
+        else:
+            _check_columns(wanted, has_x=step is None)
+            sheet = table_of(lines, wanted or ((0, 1) if step is None else (0,)), mark, point)
+            sheet.along = None if step is None else (0.0, step, "m")
+        return _points(sheet, wanted, factors)
+    except (csv.Error, UnicodeError) as error:
+        raise ValueError(f"{path}: not a file of separated values: {error}") from None
+    except ValueError as error:
+        said = str(error)
+        raise ValueError(f"{path}{',' if said.startswith('line ') else ':'} {said}") from None
+
+
+def _content(path: Path) -> bytes:
+    """All of a file that is not too large."""
+    status = path.stat()
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
+        raise ValueError(f"{path}: is {kind}; a profile is a file of numbers")
+    with path.open("rb") as file:
+        content = file.read(MAX_BYTES + 1) if status.st_size <= MAX_BYTES else None
+    if content is None or len(content) > MAX_BYTES:
+        raise ValueError(f"{path}: is too large; a profile has at most {MAX_BYTES} bytes")
+    return content
+
+
+def _points(
+    sheet: Sheet, wanted: tuple[Column, ...] | None, factors: tuple[float, float] | None
+) -> tuple[Array, Array, Array]:
+    first = next(sheet.rows, None)
+    if first is None:
+        if sheet.expected > 0:
+            raise ValueError("no numbers after END; save the data of an ERD file as text")
+        return np.empty(0), np.empty(0), np.empty(0)
+    places = _places(sheet, first, wanted)
+    found: list[Array] = [np.empty(0)] * len(places)
+    lines: Array = np.empty(0)
+    rows = chain([first], sheet.rows)
+    while block := list(islice(rows, _BLOCK)):
+        columns = _columns_of(block, places, sheet.decimal)
+        found = [np.append(column, each) for column, each in zip(found, columns, strict=True)]
+        numbers = np.array([line for line, _ in block], dtype=np.float64)
+        lines = np.append(lines, numbers)
+    if 0 < sheet.expected != len(lines):
+        raise ValueError(f"has {len(lines)} samples, and its header says {sheet.expected}")
+    if factors is None:
+        units = [sheet.units[place] if place < len(sheet.units) else "" for place in places]
+        found = [sheet.metres(unit) * each for unit, each in zip(units, found, strict=True)]
+    way = 1.0
+    if sheet.along is None:
+        x, *tracks = found
+    else:
+        start, step, unit = sheet.along
+        x, tracks = start + step * np.arange(len(lines), dtype=np.float64), found
+        way = sheet.metres(unit) if factors is None else 1.0
+    if factors is not None:
+        way, height = factors
+        tracks = [height * track for track in tracks]
+    return way * x, sum(tracks[1:], tracks[0]) / len(tracks), lines
+
+
+def _columns_of(block: list[Row], places: list[int], decimal: str) -> list[Array]:
+    """Columns of numbers; those that NumPy reads all at once, others one by one."""
+    try:
+        texts = [[cells[place] for _, cells in block] for place in places]
+        if decimal == ",":
+            # A point is no decimal mark then, and NumPy is to refuse it.
+            marks = str.maketrans({",": ".", ".": "?"})
+            texts = [[text.translate(marks) for text in column] for column in texts]
+        return [np.array(column, dtype=np.float64) for column in texts]
+    except (ValueError, IndexError):
+        return [
+            np.array([_number(cells, place, line, decimal) for line, cells in block])
+            for place in places
+        ]
+
+
+def _places(sheet: Sheet, first: Row, wanted: tuple[Column, ...] | None) -> list[int]:
+    """Numbers of the columns."""
+    line, cells = first
+    where = f"line {line}"
+    if wanted is None:
+        held = sum(cell != "" for cell in cells)
+        if sheet.along is None:
+            if held == 1:
+                raise ValueError(f"{where}: 1 column; if it has elevations, give their spacing")
+            wanted = (0, 1)
+        elif held == 1:
+            wanted = (0,)
+        else:
+            named = f": {', '.join(sheet.names)}" if sheet.names else ""
+            allowed = "give one in columns, or several for their mean"
+            raise ValueError(f"{where}: {held} columns of elevations{named}; {allowed}")
+    _check_columns(wanted, has_x=sheet.along is None)
+    found = []
+    for k, column in enumerate(wanted):
+        key = f"columns[{k}] = {shown(column)}"
+        if isinstance(column, int):
+            found.append(column)
+        elif column in sheet.names:
+            found.append(sheet.names.index(column))
+        elif not sheet.names:
+            raise ValueError(f"{where}: {key}: the file has no line of names; give a number")
+        else:
+            allowed = f"must be one of {', '.join(sheet.names)}{suggestion(column, sheet.names)}"
+            raise ValueError(f"{where}: {key}: {allowed}")
+    return found
+
+
+def _number(cells: list[str], column: int, line: int, decimal: str) -> float:
+    if column >= len(cells):
+        other = next((each for each in (";", "\t", "|", " ") if each in cells[0]), None)
+        hint = "" if other is None else f"; is the delimiter {other!r}?"
+        raise ValueError(
+            f"line {line}: {len(cells)} columns, column {column} (from 0) is missing{hint}"
+        )
+    cell = cells[column]
+    value = value_of(cell, decimal)
+    if value is None:
+        hint = ""
+        if is_number(cell):
+            hint = f"; is the decimal mark {',' if decimal == '.' else '.'!r}?"
+        elif ";" in cell or "\t" in cell:
+            hint = f"; is the delimiter {';' if ';' in cell else chr(9)!r}?"
+        raise ValueError(f"line {line}: {shown(cell)} in column {column} is not a number{hint}")
+    return value
+
+
+def _columns(columns: object) -> tuple[Column, ...] | None:
+    """Columns that were asked for: of x, if it has one, and of one elevation or more."""
+    if columns is None:
+        return None
+    several = [columns] if isinstance(columns, str | int | np.integer) else columns
+    given = items("columns", several, "names or numbers of columns")
+    if not 1 <= len(given) <= MOST_COLUMNS:
+        raise ValueError(f"columns = {shown(columns)}: must be 1 to {MOST_COLUMNS} columns")
+    found: list[Any] = []
+    for k, each in enumerate(given):
+        is_place = isinstance(each, int | np.integer) and not isinstance(each, bool) and each >= 0
+        if not (is_place or isinstance(each, str)):
+            allowed = "must be a column's name or its number from 0"
+            raise ValueError(f"columns[{k}] = {shown(each)}: {allowed}")
+        found.append(int(each) if is_place else each)
+    return tuple(found)
+
+
+def _check_columns(wanted: tuple[Column, ...] | None, *, has_x: bool) -> None:
+    """Refuses x without an elevation."""
+    if has_x and wanted is not None and len(wanted) < 2:
+        allowed = "must be that of x and one elevation or more; or give spacing in place of x"
+        raise ValueError(f"columns = {shown(list(wanted))}: {allowed}")
+
+
+def _factors(scale: object) -> tuple[float, float]:
+    factors = numbers("scale", scale)
+    if len(factors) != 2:
+        raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
+    return factors[0], factors[1]
+
+
+def _delimiter(delimiter: object) -> str:
+    """One character; a tab also as it is written."""
+    found = text("delimiter", delimiter)
+    found = "\t" if found == r"\t" else found
+    if len(found) != 1 or found in '\r\n"':
+        raise ValueError(f"delimiter = {shown(delimiter)}: must be one character, or \\t for a tab")
+    return found

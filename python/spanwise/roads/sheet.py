@@ -1,0 +1,162 @@
+"""What a file of measured points holds: rows of cells, and what its head says of the columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import chain, islice
+from typing import Final, TypeAlias
+
+from spanwise._checks import shown
+from spanwise.roads import erd
+from spanwise.roads.sniffing import DELIMITERS, decimal_of, delimiter_of, rows_of, value_of
+
+#: Number or name of a column.
+Column: TypeAlias = int | str
+#: Number and cells of a line.
+Row: TypeAlias = tuple[int, list[str]]
+
+#: Lines from which delimiter and decimal mark are found.
+_SEEN: Final = 200
+
+#: Metres in the units that headings name.
+METRES: Final = {
+    "m": 1.0,
+    "dm": 0.1,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "µm": 1e-6,
+    "μm": 1e-6,
+    "um": 1e-6,
+    "km": 1e3,
+    "ft": 0.3048,
+    "feet": 0.3048,
+    "in": 0.0254,
+    "inch": 0.0254,
+    "inches": 0.0254,
+    "mil": 2.54e-5,
+    "mils": 2.54e-5,
+}
+
+
+@dataclass
+class Sheet:
+    """Rows of a file with what its head says of the columns.
+
+    Attributes
+    ----------
+    rows : iterator of (int, list of str)
+        Line number and cells of each.
+    names, units : list of str
+        Of the columns; empty if they have none.
+    decimal : str
+        Decimal mark.
+    along : tuple of (float, float, str) or None
+        Place of the first row, distance of the rows and their unit, where no column has x.
+    expected : int
+        Number of rows that there should be; less than 1 if it is not known.
+    is_strict : bool
+        Whether units always are units, and not any words in brackets.
+    """
+
+    rows: Iterator[Row]
+    names: list[str] = field(default_factory=list)
+    units: list[str] = field(default_factory=list)
+    decimal: str = "."
+    along: tuple[float, float, str] | None = None
+    expected: int = 0
+    is_strict: bool = False
+
+    def metres(self, unit: str) -> float:
+        """What values in a unit are multiplied by; by 1 if there is none."""
+        if self.is_strict and unit and unit.lower() not in METRES:
+            raise ValueError(f"unit {unit!r}: is not known; give scale")
+        return METRES.get(unit.lower(), 1.0)
+
+
+def table_of(
+    lines: Callable[[], Iterator[str]],
+    columns: tuple[Column, ...],
+    delimiter: str | None,
+    decimal: str | None,
+) -> Sheet:
+    """Rows of separated values, with a head of titles, names and units or without."""
+    least, places = len(columns), [each for each in columns if isinstance(each, int)]
+    seen = [line for line in islice(lines(), _SEEN) if not line.lstrip().startswith("#")]
+    if delimiter is None:
+        delimiter = delimiter_of(seen, least, decimal)
+    if decimal is None:
+        decimal = decimal_of((cells for _, cells in rows_of(seen, delimiter)), least)
+    rows = rows_of(lines(), delimiter)
+    lead: list[tuple[Row, int]] = []
+    first: list[Row] = []
+    for row in rows:
+        held = [k for k, cell in enumerate(row[1]) if value_of(cell, decimal) is not None]
+        if (len(held) >= least and set(places).issubset(held)) or len(lead) == _SEEN:
+            first = [row]
+            break
+        lead.append((row, len(held)))
+    # The head ends with its last line without any number; what follows is meant to be points.
+    head = max((k for k, (_, numbers) in enumerate(lead, 1) if numbers == 0), default=0)
+    if lead and head == len(lead) and not first:
+        (line, cells), _ = lead[-1]
+        other = next((each for each in DELIMITERS if any(each in cell for cell in cells)), None)
+        hint = "" if other is None else f"; is the delimiter {other!r}?"
+        raise ValueError(
+            f"line {line}: no numbers in {shown(delimiter.join(cells))}, the last line{hint}"
+        )
+    points = chain((row for row, _ in lead[head:]), first, rows)
+    titles = [cells for (_, cells), numbers in lead[:head] if numbers == 0]
+    return Sheet(points, *_head(titles, delimiter, columns), decimal)
+
+
+def _head(
+    titles: list[list[str]], delimiter: str, columns: tuple[Column, ...]
+) -> tuple[list[str], list[str]]:
+    """Names and units of the columns."""
+    units: list[str] = []
+    if titles and all(_unit(cell) in METRES for cell in titles[-1] if cell):
+        units = [_unit(cell) for cell in titles.pop()]
+    if delimiter == " ":
+        titles = [_joined(cells) for cells in titles]
+    words = {each for each in columns if isinstance(each, str)}
+    named = [cells for cells in titles if words and words.issubset(cells)]
+    names = (named or titles or [[]])[-1]
+    return names, units or [_unit(name[name.rfind("[") :] if "[" in name else "") for name in names]
+
+
+def _unit(text: str) -> str:
+    return text.strip("[]() ").lower()
+
+
+def _joined(cells: list[str]) -> list[str]:
+    """Words between blanks, a unit in brackets with the word before."""
+    found: list[str] = []
+    for cell in cells:
+        if found and cell.startswith(("[", "(")):
+            found[-1] += f" {cell}"
+        else:
+            found.append(cell)
+    return found
+
+
+def erd_of(lines: Callable[[], Iterator[str]]) -> Sheet:
+    """Samples of an ERD file, which may run over several lines."""
+    header = erd.header_of(list(islice(lines(), erd.LONGEST)))
+    along = (header.start, header.step, header.unit or "m") if header.step > 0.0 else None
+
+    def rows() -> Iterator[Row]:
+        number, pending = header.lines, []
+        for number, line in enumerate(islice(lines(), header.lines, None), header.lines + 1):
+            pending += line.replace(",", " ").split()
+            whole = len(pending) - len(pending) % header.channels
+            for k in range(0, whole, header.channels):
+                yield number, pending[k : k + header.channels]
+            pending = pending[whole:]
+        if pending:
+            held = f"{len(pending)} of {header.channels} channels"
+            raise ValueError(f"line {number}: the last sample has {held}")
+
+    return Sheet(
+        rows(), header.names, header.units, along=along, expected=header.samples, is_strict=True
+    )

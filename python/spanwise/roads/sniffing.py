@@ -1,0 +1,146 @@
+"""How a text file writes its numbers: encoding, delimiter and decimal mark, from what it holds."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
+
+from spanwise._checks import shown
+
+#: Delimiters that are looked for; where two serve alike the first is meant. Blanks come in runs.
+DELIMITERS: Final = ("\t", ";", "|", " ", ",")
+
+_MARKS: Final = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+#: With which DOS ends a text.
+_DOS_END: Final = "\x1a"
+_CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f]")
+
+#: Whole numbers in groups of three, and what separates them beside the other of point and comma.
+_GROUPED: Final = r"[1-9]\d{{0,2}}(?:[{group}'\u2019 \u00a0\u202f]\d{{3}})+"
+_PATTERNS: Final = {
+    decimal: re.compile(
+        rf"([+-]?)(?:(\d+)\+(?=\d{{2,3}}(?!\d)))?"
+        rf"((?:\d+|{_GROUPED.format(group=group)})?(?:{decimal}{digits})?)(e[+-]?\d+)?",
+        re.IGNORECASE,
+    )
+    for decimal, group, digits in ((r"\.", ",", r"\d*"), (",", r"\.", r"\d+"))
+}
+_NOT_DIGIT: Final = re.compile(r"\D")
+
+
+def encoding_of(content: bytes) -> str:
+    """The encoding of a text: UTF-8, UTF-16 or else Windows' Western European.
+
+    Raises
+    ------
+    UnicodeError
+        If it is none of them.
+    """
+    if content.startswith(_MARKS[1:]):
+        encoding = "utf-16"
+    elif b"\0" in content[:2]:  # the first character takes two bytes
+        encoding = "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
+    else:
+        encoding = "utf-8-sig"
+        try:
+            content.decode(encoding)
+        except UnicodeDecodeError:
+            encoding = "cp1252"
+    text = content.decode(encoding)
+    control = _CONTROL.search(text.rstrip(_DOS_END))
+    if control is not None:
+        raise UnicodeError(f"it has the character {control[0]!r}")
+    return encoding
+
+
+def rows_of(lines: Iterable[str], delimiter: str) -> Iterator[tuple[int, list[str]]]:
+    """Number and cells of each line that holds anything but a comment."""
+    if delimiter == " ":
+        rows = ((number, line.split()) for number, line in enumerate(lines, 1))
+    else:
+        reader = csv.reader(lines, delimiter=delimiter)
+        rows = ((reader.line_num, [*map(str.strip, row)]) for row in reader)
+    return (row for row in rows if any(row[1]) and not row[1][0].startswith(("#", _DOS_END)))
+
+
+def value_of(text: str, decimal: str) -> float | None:
+    """The number that a text is: 1,234.5 or 1 234.5 by groups, 1+234.5 as a station; or None."""
+    if decimal == ".":
+        try:
+            return float(text)
+        except ValueError:
+            pass
+    found = _PATTERNS["," if decimal == "," else r"\."].fullmatch(text.replace("\u2212", "-"))
+    if found is None or not any(map(str.isdigit, found[3])):
+        return float(text) if text.lower() in ("nan", "inf", "-inf") else None
+    sign, stations, digits, exponent = found.groups("")
+    whole, _, fraction = digits.partition(decimal)
+    # A station counts in thousands or hundreds, as many digits follow: 1+234.5 or 12+34.5.
+    whole = stations + _NOT_DIGIT.sub("", whole)
+    return float(f"{sign}{whole or '0'}.{fraction or '0'}{exponent}")
+
+
+def delimiter_of(lines: Sequence[str], least: int, decimal: str | None) -> str:
+    """What separates the cells: what gives most lines that many numbers, and nothing else.
+
+    The decimal mark may be known.
+
+    Raises
+    ------
+    ValueError
+        If commas may be decimal marks in single numbers or separate whole ones.
+    """
+
+    def served(delimiter: str) -> tuple[int, int]:
+        whole = enough = 0
+        for _, cells in rows_of(lines, delimiter):
+            numbers = sum(is_number(cell, decimal) for cell in cells)
+            enough += numbers >= least
+            whole += numbers >= least and numbers == sum(cell != "" for cell in cells)
+        return whole, 0 if whole else enough
+
+    best = max(DELIMITERS, key=served)
+    pairs = [line.strip() for line in lines if re.fullmatch(r"\s*-?\d+,-?\d+\s*", line)]
+    if decimal is None and best != "," and len(pairs) == served(best)[0] > 0:
+        if any(",-" in pair for pair in pairs):
+            return ","
+        # No whole number begins with 0: 3,05 is one number.
+        if not any(re.search(r",0\d", pair) for pair in pairs):
+            allowed = "give decimal = ',' or delimiter = ','"
+            raise ValueError(f"{shown(pairs[0])} may be one number or two; {allowed}")
+    return best if any(served(best)) else ","
+
+
+def decimal_of(rows: Iterable[list[str]], least: int) -> str:
+    """The decimal mark of numbers, in rows of at least so many.
+
+    Raises
+    ------
+    ValueError
+        If all that have a comma may be thousands or thousandths.
+    """
+    doubtful = None
+    for cells in rows:
+        found = [cell for cell in cells if is_number(cell)]
+        for cell in found if len(found) >= least else []:
+            marks = [each for each in cell if each in ".,"]
+            if not marks:
+                continue
+            other = "," if marks[0] == "." else "."
+            if len(marks) > 1:  # groups, and the last may be another
+                return other
+            if not re.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", cell):
+                return marks[0]
+            doubtful = cell if marks[0] == "," else doubtful
+    if doubtful is not None:
+        allowed = "give decimal = ',' or decimal = '.'"
+        raise ValueError(f"{shown(doubtful)} may be thousands or have decimals; {allowed}")
+    return "."
+
+
+def is_number(text: str, decimal: str | None = None) -> bool:
+    """Whether it is one, with either decimal mark or that which is known."""
+    return any(value_of(text, each) is not None for each in decimal or ".,")
