@@ -244,10 +244,14 @@ impl<'a> Course<'a> {
             return Ok(());
         }
         let [from, to] = self.paved(settings, length);
-        match self.direction {
-            Direction::Right => self.road.check_covers(from, to),
-            Direction::Left => self.road.check_covers(length - to, length - from),
-        }
+        let [first, last] = self.road.ends();
+        let (covered, begins) = match self.direction {
+            Direction::Right => (self.road.check_covers(from, to), first <= from),
+            Direction::Left => (self.road.check_covers(length - to, length - from), length - from <= last),
+        };
+        // Without an approach the road is too short for the vehicle itself.
+        let helps = !begins && settings.approach > 0.0;
+        covered.map_err(|error| if helps { error.advising(", or shorten the approach") } else { error })
     }
 
     /// From where to where the road counts under its axles, from the end at which it enters [m].

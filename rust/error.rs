@@ -110,6 +110,14 @@ impl Error {
         Error::Input { key: key.into(), value: tidy(&value.to_string()), allowed: tidy(&allowed.into()) }
     }
 
+    /// The same with advice at its end.
+    pub fn advising(self, advice: &str) -> Self {
+        match self {
+            Error::Input { key, value, allowed } => Error::Input { key, value, allowed: allowed + advice },
+            other => other,
+        }
+    }
+
     /// The same about one of several: `place` goes in front of the name of what is refused.
     pub fn within(self, place: &str) -> Self {
         match self {

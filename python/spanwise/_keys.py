@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 from inspect import Parameter, signature
-from typing import Any
+from typing import Any, Final
 
 from spanwise._shown import LONGEST, shown
 
@@ -49,10 +50,48 @@ class Keys:
             raise ValueError(f"missing {', '.join(missing)}")
 
 
+#: How alike a word must be to be meant, each of several, one of several, and all written as one.
+_ALIKE: Final = 0.6
+_EACH_ALIKE: Final = 0.75
+_ONE_ALIKE: Final = 0.9
+_WHOLE_ALIKE: Final = 0.8
+
+
 def suggestion(word: object, known: Iterable[str]) -> str:
-    """`` (did you mean ...?)`` with the nearest known word, or nothing."""
+    """`` (did you mean ...?)`` with the nearest known word, or nothing.
+
+    Word by word, so that "very poor" is not taken for "very good": of several words all must be
+    alike. Failing that, a known word that is among them: "poor".
+    """
     if not isinstance(word, str) or len(word) > LONGEST:
         return ""
-    by_lower = {each.lower(): each for each in known}
-    near = get_close_matches(word.lower(), by_lower, n=1)
-    return f" (did you mean {by_lower[near[0]]!r}?)" if near else ""
+    by_words = {_words(each): each for each in known}
+    given = _words(word)
+    near = max(by_words, key=lambda each: _likeness(given, each), default=())
+    if _likeness(given, near) == 0.0:
+        single = (each for each in by_words if len(each) == 1)
+        near = next((each for each in single if _is_among(each[0], given)), ())
+    return f" (did you mean {by_words[near]!r}?)" if near else ""
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(re.split(r"[\s_-]+", text.lower()))
+
+
+def _is_among(word: str, given: tuple[str, ...]) -> bool:
+    return len(given) > 1 and any(_ratio(word, each) >= _ONE_ALIKE for each in given)
+
+
+def _likeness(given: tuple[str, ...], known: tuple[str, ...]) -> float:
+    """From 0 to 1, and 0 if they are not alike enough to be meant."""
+    whole = _ratio("".join(known), "".join(given))
+    if len(given) == len(known):
+        least = min(map(_ratio, known, given))
+        enough = least >= (_ALIKE if len(given) == 1 else _EACH_ALIKE)
+    else:
+        enough = whole >= _WHOLE_ALIKE
+    return whole if enough else 0.0
+
+
+def _ratio(known: str, given: str) -> float:
+    return SequenceMatcher(None, known, given).ratio()
