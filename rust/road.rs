@@ -22,8 +22,12 @@ use std::sync::Arc;
 use crate::error::{Error, finite};
 use datum::Datum;
 use feature::Feature;
+use patch::Patch;
 use profile::Profile;
 use random::Random;
+
+/// Part of the highest wave number of samples, half a wave each, up to which they are taken at their word.
+const OF_NYQUIST: f64 = 0.8;
 
 /// Elevation, slope and curvature at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,6 +136,49 @@ impl Road {
         Road { parts }
     }
 
+    /// The same surface averaged over another length [m] than its contact patches, exactly.
+    pub fn averaged(&self, length: f64) -> Result<Self, Error> {
+        let patch = Patch::new(length)?;
+        self.remade(|profile| profile.under(patch), patch)
+    }
+
+    /// The surface with its profiles as `profile` makes them and all else under a contact patch.
+    fn remade(&self, profile: impl Fn(&Profile) -> Profile, patch: Patch) -> Result<Self, Error> {
+        let parts = self.parts.iter().map(|part| {
+            Ok(match part {
+                Part::Random(random) => Part::Random(Arc::new(random.under(patch)?)),
+                Part::Profile(measured) => Part::Profile(Arc::new(profile(measured))),
+                Part::Feature(feature) => Part::Feature(Arc::new(feature.under(patch))),
+                Part::Datum(datum) => Part::Datum(*datum),
+            })
+        });
+        Ok(Road { parts: parts.collect::<Result<_, Error>>()? })
+    }
+
+    /// Wave numbers from `from` to `to` [m] [cycle/m]: up to which all its parts are known, and those of the finest part.
+    ///
+    /// Of points, up to 0.8 of half a wave per point, beyond which what is between them is anyone's guess; of a random
+    /// road, those of its band; features are known exactly, and do not count.
+    pub fn waves(&self, from: f64, to: f64) -> [f64; 2] {
+        let (mut measured, mut random, mut finest) = (f64::INFINITY, None, 0.0_f64);
+        for part in &self.parts {
+            let highest = match part {
+                Part::Random(part) => {
+                    random = Some(part.highest().max(random.unwrap_or(0.0)));
+                    part.highest()
+                }
+                Part::Profile(part) => {
+                    let highest = OF_NYQUIST * 0.5 / part.spacing(from, to);
+                    measured = measured.min(highest);
+                    highest
+                }
+                Part::Feature(_) | Part::Datum(_) => 0.0,
+            };
+            finest = finest.max(highest);
+        }
+        [random.unwrap_or(f64::INFINITY).min(measured), finest]
+    }
+
     /// How smooth the surface is, averaged over contact patches: −1 if its elevation jumps anywhere, 0 if its slope
     /// does, 1 or more if neither.
     pub fn smoothness(&self) -> i32 {
@@ -167,13 +214,7 @@ impl Road {
 
     /// Refuses a path from `from` to `to` [m] on which the road is not known everywhere, or repeats.
     pub fn check_covers(&self, from: f64, to: f64) -> Result<(), Error> {
-        self.check_holds(from, to).map_err(|error| match error {
-            Error::Input { key, value, allowed } => {
-                let allowed = allowed + "; shorten the approach or the tail, or give a longer road";
-                Error::Input { key, value, allowed }
-            }
-            other => other,
-        })?;
+        self.check_holds(from, to).map_err(|error| error.advising("; give a longer road"))?;
         let period = self.period();
         if to - from > period {
             let allowed =

@@ -655,19 +655,24 @@ fn quarter_car(n: f64) -> Complex<f64> {
     axle * (body_by_axle - 1.0)
 }
 
+fn iri(road: &Road, start: f64, end: f64) -> Result<f64, Error> {
+    golden_car::iri(road, start, end, &mut || true)
+}
+
 #[test]
 fn the_golden_car_follows_its_transfer_function() {
     for wavelength in [2.0, 5.0, 16.0, 50.0] {
         let n = 1.0 / wavelength;
         let road = profile(&grid(0.0, 800.0, 0.02), |x| 0.01 * (TAU * n * x).sin(), 0.0);
-        let response = golden_car::response(&road, 0.0, 800.0).unwrap();
-        // 400 m, a whole number of waves of 20 steps a metre, long after the start.
-        let tail = &response[response.len() - 8000..];
+        let mut response = Vec::new();
+        golden_car::drive(&road, 0.0, 800.0, &mut || true, |_, slope| response.push(slope)).unwrap();
+        // 400 m, a whole number of waves of 100 steps a metre, long after the start.
+        let tail = &response[response.len() - 40_000..];
         let found = (2.0 * tail.iter().map(|d| d * d).sum::<f64>() / tail.len() as f64).sqrt();
         let u = PI * n * 0.25;
         let expected = 0.01 * TAU * n * quarter_car(n).norm() * (u.sin() / u);
-        // A wave held over each step loses (πnΔ)²/6 of its amplitude.
-        let allowed = (PI * n * 0.05).powi(2) / 6.0 * 1.05 + 1e-6;
+        // The mean over each step loses (πnΔ)²/6 of its amplitude, chords of 20 mm for an arc (πn 20 mm)²/3.
+        let allowed = (PI * n * 0.01).powi(2) / 6.0 * 1.05 + (PI * n * 0.02).powi(2) / 3.0 * 1.05 + 1e-6;
         println!("{wavelength} m: {:.1e} of {allowed:.1e}", found / expected - 1.0);
         assert!((found / expected - 1.0).abs() < allowed);
     }
@@ -676,16 +681,111 @@ fn the_golden_car_follows_its_transfer_function() {
 #[test]
 fn the_index_of_simple_roads() {
     // No roughness, or a gradient, which the initial slope is of.
-    assert_eq!(golden_car::iri(&Road::smooth(), 0.0, 100.0).unwrap(), 0.0);
+    assert_eq!(iri(&Road::smooth(), 0.0, 100.0).unwrap(), 0.0);
     let hill = Road::from(Feature::ramp(-10.0, 210.0, 4.4, patch(0.0)).unwrap());
-    assert!(golden_car::iri(&hill, 0.0, 200.0).unwrap() < 1e-12);
+    assert!(iri(&hill, 0.0, 200.0).unwrap() < 1e-12);
     // Linear in the amplitude, and blind to its sign.
     let bump = |height| Road::from(Feature::plateau(50.0, 1.0, height, 0.5, patch(0.0)).unwrap());
-    let [one, three, dip] = [0.01, 0.03, -0.01].map(|height| golden_car::iri(&bump(height), 0.0, 200.0).unwrap());
+    let [one, three, dip] = [0.01, 0.03, -0.01].map(|height| iri(&bump(height), 0.0, 200.0).unwrap());
     assert!((three / one - 3.0).abs() < 1e-10 && (dip / one - 1.0).abs() < 1e-10);
     // And over a section twice as long the same bump counts half.
-    let longer = golden_car::iri(&bump(0.01), 0.0, 399.75).unwrap();
+    let longer = iri(&bump(0.01), 0.0, 399.75).unwrap();
     assert!((longer / one - 0.5).abs() < 1e-6);
+}
+
+#[test]
+fn the_golden_car_feels_all_points() {
+    // Waves shorter than the average, on points that hold them: of a slope of 0.1 next to nothing is felt, wherever the
+    // steps lie. Single points every 50 mm made waves of 2.5 m of the first, and an index of 2.6 m/km.
+    for (wavelength, spacing) in [(0.051, 0.005), (0.0101, 0.001), (0.247, 0.013)] {
+        let road = profile(&grid(0.0, 60.0, spacing), |x| 1e-3 * (TAU * x / wavelength).sin(), 0.0);
+        let index = iri(&road, 0.0, 60.0).unwrap();
+        println!("{wavelength} m: {:.4} m/km", 1e3 * index);
+        assert!(index < 0.1e-3, "{wavelength}: {index}");
+    }
+    // And the start does not matter: 5 mm are less than 1 %.
+    let rough =
+        |x: f64| (1..400).map(|k| 2e-3 / f64::from(k) * (0.31 * f64::from(k * k % 997) + f64::from(k) * x).sin()).sum();
+    let road = profile(&grid(0.0, 220.0, 0.005), rough, 0.0);
+    let indices: Vec<f64> = (0..10).map(|k| iri(&road, 0.005 * f64::from(k), 210.0).unwrap()).collect();
+    for index in &indices {
+        assert!((index / indices[0] - 1.0).abs() < 0.01, "{indices:?}");
+    }
+}
+
+#[test]
+fn segments_are_one_drive() {
+    let road = random(0.0, 5, 0);
+    let go_on = &mut || true;
+    // From the first point on there is no lead-in, and the segments are the parts of the index of the whole.
+    let x = grid(0.0, 130.25, 0.05);
+    let measured = profile(&x, |x| road.at(x).elevation, 0.0);
+    let found = golden_car::segments(&measured, 0.0, 130.25, 10.0, go_on).unwrap();
+    assert_eq!((found.values.len(), found.lead_in), (13, 0.0));
+    assert_eq!(found.edges[12..], [120.0, 130.0]);
+    // The first lacks half an average of response, and the whole has half an average more at the end.
+    let felt = found.values.iter().sum::<f64>() - 0.0125 * found.values[0];
+    let whole = iri(&measured, 0.0, 130.25).unwrap();
+    assert!((felt / 12.9875 / whole - 1.0).abs() < 2e-3, "{} {whole}", felt / 12.9875);
+    // Where there is road before, the car comes from there, at least 11 m and at most 50 m: a start anew is 10 % off
+    // somewhere, and a longer way before changes next to nothing.
+    let [near, far] = [20.0, 1e4].map(|before| {
+        let measured = profile(&grid(60.0 - f64::min(before, 50.0), 130.0, 0.05), |x| road.at(x).elevation, 0.0);
+        golden_car::segments(&measured, 60.0, 130.0, 20.0, go_on).unwrap()
+    });
+    assert_eq!((near.lead_in, far.lead_in), (20.0, 50.0));
+    assert_eq!(far.edges, [60.0, 80.0, 100.0, 120.0, 130.0]);
+    for (near, far) in near.values.iter().zip(&far.values) {
+        assert!((near / far - 1.0).abs() < 0.05);
+    }
+    let anew = iri(&road, 60.0, 80.25).unwrap();
+    assert!((anew / far.values[0] - 1.0).abs() > 0.01, "{anew} {}", far.values[0]);
+    let random = golden_car::segments(&road, 60.0, 130.0, 20.0, go_on).unwrap();
+    for (random, far) in random.values.iter().zip(&far.values) {
+        assert!((random / far - 1.0).abs() < 1e-2);
+    }
+    let interrupted = golden_car::segments(&road, 60.0, 960.0, 20.0, &mut || false);
+    assert_eq!(interrupted.unwrap_err(), Error::Interrupted);
+    for (every, part) in [(0.2, "at least 0.25 m"), (-1.0, "greater than 0"), (f64::NAN, "greater than 0")] {
+        assert!(refusal(golden_car::segments(&road, 0.0, 100.0, every, go_on)).contains(part));
+    }
+}
+
+#[test]
+fn averages_of_any_length_are_those_of_the_surface() {
+    for ((name, bare), (_, felt)) in kinds(0.0).into_iter().zip(kinds(PATCH)) {
+        for x in grid(0.4137, 29.5, 0.531) {
+            assert_eq!(felt.averaged(0.0).unwrap().at(x), bare.at(x), "{name}");
+            assert_eq!(bare.averaged(PATCH).unwrap().at(x), felt.at(x), "{name}");
+        }
+    }
+}
+
+#[test]
+fn waves_that_are_known() {
+    let near = |found: [f64; 2], expected: [f64; 2]| {
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!(found == expected || (found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+    };
+    let measured = |spacing: f64| profile(&grid(-10.0, 110.0, spacing), f64::sin, PATCH);
+    let step = || Road::from(Feature::step(1.0, 0.01, patch(PATCH)).unwrap());
+    near(measured(0.5).waves(0.0, 100.0), [0.8, 0.8]);
+    near(random(PATCH, 1, 0).waves(0.0, 100.0), [4.0, 4.0]);
+    near(step().waves(0.0, 100.0), [f64::INFINITY, 0.0]);
+    near(Road::sum([measured(0.5), measured(0.05), step()]).waves(0.0, 100.0), [0.8, 8.0]);
+    near(Road::sum([measured(0.05), random(0.0, 1, 0)]).waves(0.0, 100.0), [4.0, 8.0]);
+    // A gap does not count, a coarse part of the way does; what lies outside the section does not.
+    let mut x = grid(0.0, 50.0, 0.1);
+    x.extend(grid(50.4, 80.0, 0.1));
+    x.extend(grid(81.0, 120.0, 1.0));
+    let uneven = profile(&x, f64::sin, PATCH);
+    near(uneven.waves(0.0, 80.0), [4.0, 4.0]);
+    near(uneven.waves(0.0, 120.0), [0.4, 0.4]);
+    near(uneven.waves(90.0, 120.0), [0.4, 0.4]);
+    near(uneven.waves(3.01, 3.02), [4.0, 4.0]);
+    near(uneven.waves(-9.0, -8.0), [4.0, 4.0]);
+    near(uneven.waves(500.0, 600.0), [0.4, 0.4]);
 }
 
 #[test]
@@ -694,7 +794,7 @@ fn random_roads_have_the_index_of_their_roughness() {
     let expected = 0.543 * (GOOD / 1e-6).sqrt() * 1e-3;
     let synthesis = synthesis(0.0);
     let indices: Vec<f64> =
-        (0..200).map(|sample| golden_car::iri(&synthesis.road(3, sample).into(), 0.0, 1000.0).unwrap()).collect();
+        (0..200).map(|sample| iri(&synthesis.road(3, sample).into(), 0.0, 1000.0).unwrap()).collect();
     let (mean, error) = estimate(&indices);
     println!("IRI {:.4} ± {:.4} m/km, expected {:.4}", 1e3 * mean, 1e3 * error, 1e3 * expected);
     assert!((mean / expected - 1.0).abs() < 0.01);
@@ -751,7 +851,7 @@ fn bad_values_are_refused() {
         (refusal(Feature::plateau(0.0, 1.0, 0.1, 0.6, patch(0.0))), ["edge = 0.6 m", "half the length, 0.5 m"]),
         (refusal(Feature::plateau(0.0, 0.0, 0.1, 0.0, patch(0.0))), ["length = 0", "greater than 0"]),
         (refusal(Feature::step(f64::NAN, 0.1, patch(0.0))), ["at = NaN", "finite"]),
-        (refusal(golden_car::iri(&Road::smooth(), 0.0, 10.0)), ["end = 10 m", "11 to 100000 m beyond start"]),
+        (refusal(iri(&Road::smooth(), 0.0, 10.0)), ["end = 10 m", "11 to 100000 m beyond start"]),
     ] {
         assert!(parts.iter().all(|part| text.contains(part)), "{text}");
     }

@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use super::Vector;
+use super::{Vector, interruptible};
 use crate::error::Error;
 use crate::road::feature::Feature;
 use crate::road::patch::Patch;
@@ -107,8 +107,30 @@ impl PyRoad {
         (column(|p| p.elevation), column(|p| p.slope), column(|p| p.curvature))
     }
 
+    /// The same averaged over another length than its contact patches.
+    fn averaged(&self, py: Python<'_>, length: f64) -> PyResult<Self> {
+        Ok(PyRoad(py.detach(|| self.0.averaged(length))?))
+    }
+
+    /// Wave numbers up to which all parts are known, and those of the finest.
+    fn waves(&self, start: f64, end: f64) -> (f64, f64) {
+        self.0.waves(start, end).into()
+    }
+
     fn iri(&self, py: Python<'_>, start: f64, end: f64) -> PyResult<f64> {
-        Ok(py.detach(|| golden_car::iri(&self.0, start, end))?)
+        interruptible(py, |go_on| golden_car::iri(&self.0, start, end, go_on))
+    }
+
+    /// The index by segments: their ends, the values, and the road before the first.
+    fn iri_segments<'py>(
+        &self,
+        py: Python<'py>,
+        start: f64,
+        end: f64,
+        every: f64,
+    ) -> PyResult<(Vector<'py>, Vector<'py>, f64)> {
+        let found = interruptible(py, |go_on| golden_car::segments(&self.0, start, end, every, go_on))?;
+        Ok((found.edges.into_pyarray(py), found.values.into_pyarray(py), found.lead_in))
     }
 }
 

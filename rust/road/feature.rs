@@ -62,6 +62,11 @@ impl Feature {
         Ok(Feature { pieces: vec![piece], patch })
     }
 
+    /// The same under another contact patch.
+    pub fn under(&self, patch: Patch) -> Self {
+        Feature { pieces: self.pieces.clone(), patch }
+    }
+
     /// How smooth it is: −1 with a jump, 0 with a kink, 1 with a continuous slope; a contact patch adds one.
     pub fn smoothness(&self) -> i32 {
         let piece = |piece: &Piece| match *piece {

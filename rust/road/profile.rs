@@ -15,6 +15,9 @@ const FEWEST: usize = 4;
 /// Largest spacing without a `max_gap`, in median spacings.
 const GAP: f64 = 5.0;
 
+/// Part of a section that must be measured as finely as its spacing says.
+const MOST_OF_IT: f64 = 0.9;
+
 /// A measured profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
@@ -45,13 +48,48 @@ impl Profile {
         let base = elevation[0];
         elevation.iter_mut().for_each(|r| *r -= base);
         let cubics = spline(&x, &elevation);
+        Ok(Self::of(x, base, cubics, patch))
+    }
+
+    /// Of cubics from point to point above a base [m].
+    fn of(x: Vec<f64>, base: f64, cubics: Vec<[f64; 4]>, patch: Patch) -> Self {
         let mut integrals = vec![0.0];
         for (piece, [a, b, c, d]) in x.windows(2).zip(&cubics) {
             let h = piece[1] - piece[0];
             let area = h * (a + h * (b / 2.0 + h * (c / 3.0 + h * d / 4.0)));
             integrals.push(integrals[integrals.len() - 1] + area);
         }
-        Ok(Profile { x, base, cubics, integrals, patch })
+        Profile { x, base, cubics, integrals, patch }
+    }
+
+    /// The same under another contact patch.
+    pub fn under(&self, patch: Patch) -> Self {
+        Profile { patch, ..self.clone() }
+    }
+
+    /// The straight lines from point to point under a contact patch, from elevation 0 on.
+    pub fn chords(&self, patch: Patch) -> Self {
+        let mut elevation: Vec<f64> = self.cubics.iter().map(|cubic| cubic[0]).collect();
+        elevation.push(self.curve(self.ends()[1]).elevation);
+        let rise = |(x, r): (&[f64], &[f64])| [r[0], (r[1] - r[0]) / (x[1] - x[0]), 0.0, 0.0];
+        Self::of(self.x.clone(), 0.0, self.x.windows(2).zip(elevation.windows(2)).map(rise).collect(), patch)
+    }
+
+    /// The spacing [m] that is not exceeded over nine tenths of the way from `from` to `to` [m]: single gaps do not
+    /// count, a coarse part of a survey does.
+    pub fn spacing(&self, from: f64, to: f64) -> f64 {
+        let points = self.x.len();
+        let first = self.x.partition_point(|&x| x <= from).saturating_sub(1).min(points - 2);
+        let end = (self.x.partition_point(|&x| x < to) + 1).clamp(first + 2, points);
+        let mut spacings: Vec<f64> = self.x[first..end].windows(2).map(|pair| pair[1] - pair[0]).collect();
+        spacings.sort_by(f64::total_cmp);
+        let mut left = MOST_OF_IT * (self.x[end - 1] - self.x[first]);
+        let exceeded = |spacing: &&f64| {
+            left -= **spacing;
+            left > 0.0
+        };
+        let within = spacings.iter().take_while(exceeded).count();
+        spacings[within.min(spacings.len() - 1)]
     }
 
     /// First and last x [m].

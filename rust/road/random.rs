@@ -178,6 +178,16 @@ impl Random {
         self.spline.period()
     }
 
+    /// The same road under another contact patch.
+    pub fn under(&self, patch: Patch) -> Result<Self, Error> {
+        Ok(Synthesis::new(self.spectrum, patch, Some(self.period()))?.road(self.seed, self.sample))
+    }
+
+    /// Its highest wave number [cycle/m].
+    pub fn highest(&self) -> f64 {
+        self.spectrum.band()[1]
+    }
+
     /// Elevation, slope and curvature at x.
     pub fn at(&self, x: f64) -> Point {
         self.spline.at(x)

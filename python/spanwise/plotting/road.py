@@ -149,8 +149,12 @@ class RoadPlot:
             return whole(ax)
         line = {**STATIC, "linewidth": 1.0}
         G = float(f"{1e6 * found.G:.3g}")
-        name = f"fitted: G$_d$(n$_0$) = {G:g}·10$^{{-6}}$ m$^3$, class {found.letter}"
-        ax.plot(ends, found.G * (ends / REFERENCE) ** -2, label=name, **line)
+        assert found.error is not None
+        assert found.band is not None
+        spread = f"± {100.0 * found.error:.0f} %"
+        name = f"fitted: G$_d$(n$_0$) = {G:g}·10$^{{-6}}$ m$^3$ {spread}, class {found.letter}"
+        looked_at = np.array(found.band)
+        ax.plot(looked_at, found.G * (looked_at / REFERENCE) ** -2, label=name, **line)
         legend_above(ax, clear=0.2)
         return whole(ax)
 

@@ -4,7 +4,7 @@ from spanwise.roads.base import Road, Smooth, Sum
 from spanwise.roads.features import Bump, Camber, Joint, Pothole, Ramp, Step
 from spanwise.roads.profile import Profile
 from spanwise.roads.random import BRIDGE_STUDY, ISO8608, bridge_study, from_iri
-from spanwise.roads.roughness import CLASSES, IsoClass, classify
+from spanwise.roads.roughness import CLASSES, IriSegments, IsoClass, classify
 from spanwise.roads.table import from_table
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "ISO8608",
     "Bump",
     "Camber",
+    "IriSegments",
     "IsoClass",
     "Joint",
     "Pothole",
