@@ -175,7 +175,45 @@ def test_road(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert err.startswith("spanwise: warning: elevations: their median slope is")
     assert err.count("\n") == 1
     assert main(["road", str(case), "--scale", "1", "1e-3"]) == 2
-    assert "--scale: used with CSV files only" in capsys.readouterr().err
+    assert "--scale: used with profiles only, not with a case" in capsys.readouterr().err
+
+
+def test_road_by_segments_and_as_json(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case.write_text(CASE + ROAD, encoding="utf-8")
+    road = sw.ISO8608("C", seed=2)
+    given = ["road", str(case), "--start", "10", "--end", "210", "--every", "50"]
+    assert main(given) == 0
+    out = capsys.readouterr().out
+    found, segments = road.iso_class(10.0, 210.0), road.iri(10.0, 210.0, every=50.0)
+    assert found.error is not None
+    assert found.band is not None
+    said = f"standard error {100 * found.error:.0f} %, from 0.06 to {found.band[1]:.3g} cycle/m\n"
+    assert said in out
+    assert f"IRI by segments, after a lead-in of 50 m\n{segments}\n" in out
+    file = tmp_path / "road.json"
+    assert main([*given, "--json", str(file)]) == 0
+    assert capsys.readouterr().out == out
+    assert main([*given, "--json", "-"]) == 0
+    written = capsys.readouterr().out
+    assert file.read_text(encoding="utf-8") == written
+    told = json.loads(written)
+    assert told["section"] == [10.0, 210.0]
+    assert told["iri"] == road.iri(10.0, 210.0)
+    assert told["iri_segments"]["values"] == segments.values.tolist()
+    assert told["iri_segments"]["lead_in"] == 50.0
+    iso = told["iso_8608"]
+    assert (iso["class"], iso["G"], iso["error"]) == (found.letter, found.G, found.error)
+    assert iso["band"] == list(found.band)
+    # What was read is not written over.
+    assert main(["road", str(case), "--json", str(case)]) == 2
+    assert "was read, and is not overwritten" in capsys.readouterr().err
+    # Too short for a class: the reason in its place.
+    assert main(["road", str(case), "--end", "12", "--json", "-"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["iso_8608"] is None
+    assert "two octaves" in told["iso_8608_refused"]
 
 
 def test_figures_of_traffic(tmp_path: Path) -> None:

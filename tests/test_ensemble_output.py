@@ -175,6 +175,18 @@ def test_command(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capsys.readouterr().out)["hash"] == expected.hash
 
 
+def test_command_on_the_same_road(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # Advice names the option that is there: two random parts cannot both be drawn anew.
+    other = CASE.replace("[road]", "[[road]]") + '[[road]]\nkind = "iso-8608"\nclass = "A"\n'
+    case.write_text(other, encoding="utf-8")
+    command = ["ensemble", str(case), "--samples", "3"]
+    assert main(command) == 2
+    assert "or --same-road to take all as they stand" in capsys.readouterr().err
+    assert main([*command, "--same-road"]) == 0
+    expected = sw.Case.read(case).ensemble(samples=3, own_roads=False)
+    assert f"hash      {expected.hash}" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("more", "says"),
     [

@@ -46,6 +46,13 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         "--first", type=int, default=0, metavar="N", help="number of the first sample; 0 by default"
     )
     command.add_argument(
+        "--same-road",
+        action="store_const",
+        const=False,
+        dest="own_roads",
+        help="drive on the roads of the case as they stand, not on one drawn for each sample",
+    )
+    command.add_argument(
         "--threads", type=int, metavar="N", help="threads; as many as the processor has by default"
     )
     command.add_argument(
@@ -77,6 +84,8 @@ def _errors(options: Iterable[str]) -> Iterator[None]:
             raise ValueError(f"--{said}") from error
         if key == "SPANWISE_ISA":
             raise ValueError(said) from error
+        if "own_roads=False" in said:
+            raise CaseError(str(error).replace("own_roads=False", "--same-road")) from error
         raise
 
 
@@ -89,7 +98,7 @@ def run(options: argparse.Namespace) -> str:
     check_targets(named, case.files)
     given = {
         key: getattr(options, key)
-        for key in ("modes", "threads")
+        for key in ("modes", "threads", "own_roads")
         if getattr(options, key) is not None
     }
     given |= {key: getattr(options, key) for key in ("samples", "seed", "first")}

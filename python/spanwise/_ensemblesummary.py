@@ -16,7 +16,7 @@ from spanwise.columns import ROUNDING, SampleExtremes, Sense
 from spanwise.damping import in_words
 from spanwise.population import FACTORS, Ensemble
 from spanwise.roads import ISO8608, Road, Sum
-from spanwise.summary import _road as road_in_words
+from spanwise.summary import road_in_words
 from spanwise.traffic import Passage, plain_drive
 from spanwise.traffic import Speeds as SpeedsInTime
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from spanwise import _ensemblecommand
+from spanwise import _ensemblecommand, _roadcommand
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._figures import figure_files
@@ -19,8 +19,8 @@ from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
-from spanwise.roads import ISO8608, Profile, Road, Smooth
-from spanwise.summary import roughness, summary
+from spanwise.roads import ISO8608, Smooth
+from spanwise.summary import summary
 
 BAD_INPUT, FAILURE, INTERRUPTED, SIGNALLED = 2, 1, 130, 128
 
@@ -129,65 +129,8 @@ def _parser() -> _Parser:
     )
     vehicles.add_argument("preset", nargs="?", metavar="PRESET", help="the one to show")
     vehicles.set_defaults(work=_vehicles)
-    road = commands.add_parser(
-        "road",
-        allow_abbrev=False,
-        help="tell how rough a road is",
-        description="Tell how rough the road of a case, or a measured one, is: its international "
-        "roughness index, and its class after ISO 8608 by a line fitted to its spectrum.",
-    )
-    road.add_argument(
-        "file",
-        type=Path,
-        metavar="FILE",
-        help="a case with a [road], or a CSV file with x and elevation in metres in its first two "
-        "columns",
-    )
-    road.add_argument("--start", type=float, metavar="X", help="where the section begins [m]")
-    road.add_argument("--end", type=float, metavar="X", help="where it ends [m]")
-    road.add_argument(
-        "--columns",
-        nargs=2,
-        metavar=("X", "Z"),
-        help="names, or numbers from 0, of the columns of a CSV file with x and elevation",
-    )
-    road.add_argument("--delimiter", metavar="C", help="what separates the columns; , by default")
-    road.add_argument(
-        "--scale",
-        nargs=2,
-        type=float,
-        metavar=("X", "Z"),
-        help="what x and elevation are multiplied by to give metres: 1 0.001 for mm",
-    )
-    road.add_argument(
-        "--max-gap", type=float, metavar="D", help="largest distance of neighbouring points [m]"
-    )
-    road.set_defaults(work=_road)
+    _roadcommand.add_to(commands)
     return parser
-
-
-def _road(options: argparse.Namespace) -> str:
-    columns = options.columns and tuple(int(c) if c.isdecimal() else c for c in options.columns)
-    given = {
-        "columns": columns,
-        "delimiter": options.delimiter,
-        "scale": options.scale,
-        "max_gap": options.max_gap,
-    }
-    given = {key: value for key, value in given.items() if value is not None}
-    with warnings.catch_warnings(record=True) as doubts:
-        warnings.simplefilter("always", UserWarning)
-        if options.file.suffix.lower() == ".toml":
-            for key in given:
-                raise ValueError(f"--{key.replace('_', '-')}: used with CSV files only")
-            case = Case.read(options.file)
-            road: Road = Smooth() if case.road is None else case.road
-        else:
-            road = Profile.read_csv(options.file, **given)
-        text = roughness(road, options.start, options.end) + "\n"
-    for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
-        tell(f"spanwise: warning: {message}")
-    return text
 
 
 def _vehicles(options: argparse.Namespace) -> str:

@@ -32,32 +32,6 @@ def summary(run: Run) -> str:
     return "\n".join([*_description(run), "", *_governing(run), "", str(run.impact_factors)])
 
 
-def roughness(road: Road, start: float | None = None, end: float | None = None) -> str:
-    """How rough a road is from `start` to `end` [m]; by default all that is known of it.
-
-    Of a random road that is one period, of single features 100 m from the start of the bridge.
-    """
-    first, last = road.ends
-    if not np.isfinite(first) or not np.isfinite(last):
-        period = road.repeats_after
-        first, last = 0.0, period if np.isfinite(period) else 100.0
-    start, end = first if start is None else start, last if end is None else end
-    index = road.iri(start, end)
-    lines = [
-        f"road      {_road(road)}",
-        f"section   {start:g} to {end:g} m",
-        f"IRI       {index:.2f} m/km",
-    ]
-    try:
-        found = road.iso_class(start, end)
-    except ValueError as error:
-        return "\n".join([*lines, f"ISO 8608  {error}"])
-    limits = f"{found.lower:g} to {found.upper:g}"
-    return "\n".join(
-        [*lines, f"ISO 8608  class {found.letter} ({limits} m3), fitted G_d(n0) {found.G:.4g} m3"]
-    )
-
-
 def _description(run: Run) -> Iterator[str]:
     bridge, used = run.bridge, run.settings
     held = ", ".join(
@@ -73,7 +47,7 @@ def _description(run: Run) -> Iterator[str]:
     yield f"modes     {len(run.frequencies)}: {_list(run.frequencies, '.3f')} Hz; damping {damping}"
     for k, passage in enumerate(run.passages):
         yield from _vehicle(run, k, passage)
-    yield f"road      {_road(run.road)}"
+    yield f"road      {road_in_words(run.road)}"
     ramp = f" ({used['ramp']:g} m of it to fade in the road)" if used["ramp"] else ""
     yield (
         f"crossing  approach {used['approach']:g} m{ramp}, tail {used['tail']:g} s; {run.steps} "
@@ -114,7 +88,7 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     for remark in remarks(run, number):
         yield f"          {remark}"
     if passage.road is not None:
-        yield f"          on a road of its own: {_road(passage.road)}"
+        yield f"          on a road of its own: {road_in_words(passage.road)}"
 
 
 def _drive(drive: object) -> str:
@@ -131,10 +105,10 @@ def _drive(drive: object) -> str:
     )
 
 
-def _road(road: Road) -> str:
+def road_in_words(road: Road) -> str:
     """Kind, roughness, seed and contact patch; of a sum those of every part."""
     if isinstance(road, Sum):
-        return " + ".join(map(_road, road.parts))
+        return " + ".join(map(road_in_words, road.parts))
     words = [road.kind]
     for key in ("at", "start", "end"):
         if hasattr(road, key):
