@@ -40,7 +40,7 @@ def factors_by_class(samples: int) -> dict[str, np.ndarray[tuple[int, ...], np.d
             damping=0.02,
             sections=[MIDSPAN],
             quantities=["moment"],
-        ).impact_factors("sagging")[:, 0]
+        ).impact_factors.sagging[:, 0]
         for road_class in CLASSES
     }
 

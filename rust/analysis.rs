@@ -1,5 +1,7 @@
 //! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
 
+use serde::{Deserialize, Serialize};
+
 use crate::bridge::Bridge;
 use crate::course::Passage;
 use crate::crossing::{ModalBridge, cross_all};
@@ -123,6 +125,11 @@ impl Analysis {
         Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope })
     }
 
+    /// An outcome that has travelled, with what did not.
+    pub fn received(&self, outcome: Outcome) -> Outcome {
+        Outcome { packed: self.rows.pack_history(&outcome.history), ..outcome }
+    }
+
     /// The responses of one quantity at every instant, dynamic and static, row by row.
     pub fn histories(
         &self,
@@ -166,11 +173,12 @@ impl Analysis {
 }
 
 /// What a crossing gives.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     /// States, step after step.
     pub history: History,
-    /// The same, made ready for recovery.
+    /// The same, made ready for recovery; it does not travel.
+    #[serde(skip)]
     pub packed: Packed,
     /// Extremes of all responses.
     pub envelope: Envelope,

@@ -7,6 +7,7 @@
 
 pub mod alone;
 pub mod block;
+pub mod clock;
 pub mod look;
 pub mod record;
 pub mod run;

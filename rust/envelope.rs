@@ -1,9 +1,11 @@
 //! Extremes of every response, where and when they occur, and the impact factors a bridge engineer reads off them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::history::History;
 
 /// An extreme of a response over a crossing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// The extreme [unit of the response].
     pub value: f64,
@@ -16,7 +18,7 @@ pub struct Extreme {
 }
 
 /// Largest and smallest of every response.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Extremes {
     /// Largest values.
     pub max: Vec<Extreme>,
@@ -46,7 +48,7 @@ impl Extremes {
 }
 
 /// Dynamic and static extremes of a crossing.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelope {
     /// Of the dynamic responses.
     pub dynamic: Extremes,

@@ -2,12 +2,14 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use serde::{Deserialize, Serialize};
+
 use crate::assembly::{Assembly, Sprung};
 use crate::newmark::Coordinate;
 use crate::step::{Geometry, State};
 
 /// A vehicle's columns in a [`History`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Columns {
     /// Its axles among all, front first.
     pub axles: Range<usize>,
@@ -22,7 +24,7 @@ pub struct Columns {
 }
 
 /// States of a crossing, step after step. Arrays hold one row per instant.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct History {
     /// Number of axles, of all vehicles.
     pub axles: usize,

@@ -16,6 +16,7 @@ use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::ensemble::Progress;
 use crate::error::Error;
@@ -119,6 +120,12 @@ fn rows<'py>(py: Python<'py>, values: Vec<f64>, width: usize) -> PyResult<Matrix
     values.into_pyarray(py).reshape([height, width])
 }
 
+/// A value as bytes, which make the same again.
+fn packed<'py, T: serde::Serialize>(py: Python<'py>, value: &T) -> PyResult<Bound<'py, PyBytes>> {
+    let bytes = postcard::to_stdvec(value).map_err(|e| PyRuntimeError::new_err(e.to_string()))?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
 fn matrix<'py>(py: Python<'py>, m: &Mat<f64>) -> Matrix<'py> {
     Array2::from_shape_fn((m.nrows(), m.ncols()), |(i, j)| m[(i, j)]).into_pyarray(py)
 }
@@ -133,7 +140,7 @@ mod _core {
     #[pymodule_export]
     use super::crossing::{Crossing, cross};
     #[pymodule_export]
-    use super::ensemble::{Ensemble, ensemble};
+    use super::ensemble::{Clock, Ensemble, ensemble, fingerprint, static_loads, varied};
     #[pymodule_export]
     use super::road::{PyRoad, road_classes};
     #[pymodule_export]

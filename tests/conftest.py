@@ -18,7 +18,7 @@ Same: TypeAlias = Callable[[sw.Ensemble, int, sw.Run], None]
 def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     """All that both give is equal to the bit, or differs by rounding where sums are made anew."""
     for name in (*ensemble.quantities, "axle_loads"):
-        of_all, alone = getattr(ensemble, name), run.envelope(name)  # type: ignore[arg-type]
+        of_all, alone = ensemble.envelope(name), run.envelope(name)  # type: ignore[arg-type]
         axles = len(alone.x)
         for side in ("max", "min"):
             extremes, at_rest = getattr(alone, side), getattr(alone, f"static_{side}")
@@ -33,11 +33,11 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     for factor, (name, _) in FACTORS.items():
         if name in (*ensemble.quantities, "axle_loads"):
             expected = getattr(run.impact_factors, factor)
-            found = ensemble.impact_factors(factor)[sample, : len(expected)]
+            found = ensemble.impact_factors[factor][sample, : len(expected)]
             assert_array_equal(found, expected, factor)
     axles = len(run.static_axle_loads)
-    assert_array_equal(ensemble.lift_offs[sample, :axles], run.off_road.count)
-    off = ensemble.time_off_road[sample, :axles]
+    assert_array_equal(ensemble.off_road.count[sample, :axles], run.off_road.count)
+    off = ensemble.off_road.total[sample, :axles]
     np.testing.assert_allclose(off, run.off_road.total, rtol=1e-9, atol=1e-12)
     accelerations = ensemble.body_accelerations.max[sample]
     bodies = [body for vehicle in run.vehicles for body in vehicle.bodies]

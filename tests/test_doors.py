@@ -699,7 +699,7 @@ ARRAYS: Final[dict[str, tuple[Callable[[Any], object], list[Any]]]] = {
         [0.0, 1.0, 2.0, 3.0, 4.0],
     ),
     "speed": (
-        lambda v: sw.ensemble(B, Q, samples=3, speed=v, damping=0.0).moment.max,
+        lambda v: sw.ensemble(B, Q, samples=3, speed=v, damping=0.0).envelope("moment").max,
         [20.0, 21.0, 22.5],
     ),
     "kind": (

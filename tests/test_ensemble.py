@@ -161,14 +161,14 @@ def test_kinds(same: Same) -> None:
     ]
     kind = [2, 0, 1, 1, 0, 2, 2]
     found = sw.ensemble(BRIDGE, fleet, samples=7, kind=kind, speed=20.0, road=CLASS_B, **SHORT)
-    assert found.axle_loads.max.shape == (7, 5)
+    assert found.envelope("axle_loads").max.shape == (7, 5)
     assert found.shares_geometry
     for sample, number in enumerate(kind):
         alone = found.run(sample)
         assert alone.truck == fleet[number]
         same(found, sample, alone)
     lone = sw.ensemble(BRIDGE, fleet[1], samples=1, first=3, speed=20.0, road=CLASS_B, **SHORT)
-    assert_array_equal(lone.moment.max[0], found.moment.max[3])
+    assert_array_equal(lone.envelope("moment").max[0], found.envelope("moment").max[3])
 
 
 def test_kinds_of_events(same: Same) -> None:
@@ -226,7 +226,7 @@ def test_defaults_are_those_of_a_crossing(same: Same) -> None:
 def test_lift_off(same: Same) -> None:
     given: dict[str, Any] = {**SHORT, "speed": 25.0, "road": sw.ISO8608("F", period=160.0)}
     found = sw.ensemble(BRIDGE, sw.vehicles.hs20_44(), samples=4, **given)
-    assert found.lift_offs.sum() > 0
+    assert found.off_road.count.sum() > 0
     for sample in range(4):
         same(found, sample, found.run(sample))
 
@@ -260,12 +260,16 @@ def test_other_bridges(same: Same) -> None:
 
 def test_nothing_and_one() -> None:
     none = sw.ensemble(BRIDGE, TRUCK, samples=0, speed=20.0, road=CLASS_B, **SHORT)
-    assert none.moment.max.shape == none.moment.max_time.shape == (0, len(none.sections))
-    assert none.impact_factors("sagging").shape == (0, len(none.sections))
+    assert (
+        none.envelope("moment").max.shape
+        == none.envelope("moment").max_time.shape
+        == (0, len(none.sections))
+    )
+    assert none.impact_factors.sagging.shape == (0, len(none.sections))
     assert none.failures == ()
     assert none.settings["samples"] == 0
     one = sw.ensemble(BRIDGE, TRUCK, samples=1, speed=[20.0], road=CLASS_B, **SHORT)
-    assert one.moment.max.shape == (1, len(one.sections))
+    assert one.envelope("moment").max.shape == (1, len(one.sections))
     with pytest.raises(IndexError, match="row 1: must be from 0 to below 1"):
         one.run(1)
 
@@ -274,7 +278,7 @@ def test_histories() -> None:
     found = sw.ensemble(BRIDGE, TRUCK, samples=6, speed=20.0, road=CLASS_B, **SHORT)
     moments = found.histories("moment", samples=[4, 1])
     assert_array_equal(moments[0], found.run(4).moment)
-    assert_array_equal(moments.max(axis=1)[1] <= found.moment.max[1], True)
+    assert_array_equal(moments.max(axis=1)[1] <= found.envelope("moment").max[1], True)
     assert found.histories("axle_loads", samples=[0]).shape[2] == 2
     assert found.histories("axle_loads", samples=[]).shape[0] == 0
     with pytest.raises(ValueError, match="quantity = 'shears': must be one of"):

@@ -61,7 +61,9 @@ def test_a_sample_alone_is_as_among_others() -> None:
     for row in (0, 13, 39):
         alone = sw.ensemble(BRIDGE, TRUCK, samples=1, first=100 + row, **GIVEN)
         assert alone.digests[0] == all_.digests[row]
-        assert_array_equal(alone.shear.max_time[0], all_.shear.max_time[row])
+        assert_array_equal(
+            alone.envelope("shear").max_time[0], all_.envelope("shear").max_time[row]
+        )
     other = sw.ensemble(BRIDGE, TRUCK, samples=40, first=100, **{**GIVEN, "seed": 12})
     assert not (other.digests == all_.digests).any()
 
@@ -69,10 +71,10 @@ def test_a_sample_alone_is_as_among_others() -> None:
 def test_results_are_not_to_be_written_to() -> None:
     found = sw.ensemble(BRIDGE, TRUCK, samples=3, **GIVEN)
     for values in (
-        found.moment.max,
-        found.moment.static_max,
-        found.moment.max_time,
-        found.shear.min,
+        found.envelope("moment").max,
+        found.envelope("moment").static_max,
+        found.envelope("moment").max_time,
+        found.envelope("shear").min,
         found.digests,
         found.load_coefficients,
         found.sections,
@@ -229,16 +231,20 @@ def test_failures_are_marked_and_leave_the_others() -> None:
     assert "shorten the step" in found.failures[0].cause
     assert found.failures[0].step is not None
     for values in (
-        found.moment.max,
-        found.moment.max_time,
-        found.shear.min_position,
-        found.axle_loads.max,
+        found.envelope("moment").max,
+        found.envelope("moment").max_time,
+        found.envelope("shear").min_position,
+        found.envelope("axle_loads").max,
         found.load_coefficients,
-        found.impact_factors("sagging"),
-        found.impact_factors("shear"),
+        found.impact_factors.sagging,
+        found.impact_factors.shear,
     ):
         assert np.isnan(values[[3, 17]]).all()
-    for values in (found.moment.max, found.moment.max_time, found.axle_loads.max):
+    for values in (
+        found.envelope("moment").max,
+        found.envelope("moment").max_time,
+        found.envelope("axle_loads").max,
+    ):
         assert np.isfinite(np.delete(values, [3, 17], axis=0)).all()
     sound = sw.ensemble(
         BRIDGE, masses, samples=40, first=50, factors={"body_mass": np.ones(40)}, **given

@@ -74,16 +74,16 @@ def test_summary(found: sw.Ensemble) -> None:
     assert f"hash      {found.hash}" in text
     assert "side by side" in text
     (row,) = [line for line in text.split("\n") if line.startswith("moment, sagging")]
-    most = found.moment.max.max(axis=1) / 1e3
+    most = found.envelope("moment").max.max(axis=1) / 1e3
     numbers = [float(each) for each in row.split("]")[1].split()[:5]]
     expected = [*np.percentile(most, [5, 50, 95, 99]), most.max()]
     assert numbers == pytest.approx(expected, abs=1e-3)
     row = next(line for line in text.split("\n") if line.startswith("sagging"))
-    static = np.median(found.moment.static_max, axis=0)
+    static = np.median(found.envelope("moment").static_max, axis=0)
     # The bridge is symmetric: of sections alike the one with the larger dynamic value.
     alike = np.flatnonzero(static >= (1.0 - 1e-9) * static.max())
-    at = int(alike[np.argmax(np.median(found.moment.max[:, alike], axis=0))])
-    factors = found.impact_factors("sagging")[:, at]
+    at = int(alike[np.argmax(np.median(found.envelope("moment").max[:, alike], axis=0))])
+    factors = found.impact_factors.sagging[:, at]
     assert float(row.split()[1]) == pytest.approx(factors.mean(), abs=1e-3)
     alone = sw.ensemble(BRIDGE, TRUCK, samples=1, speed=20.0, drive="constant-traction")
     assert "one by one" in alone.summary()
@@ -95,16 +95,18 @@ def test_repr(found: sw.Ensemble) -> None:
         "Ensemble(200 samples from 0 of seed 1, 25 sections, deflection, moment, shear, "
         f"reactions; hash {found.hash})"
     )
-    assert repr(found.moment) == "SampleExtremes(200 samples, 25 columns)"
+    assert repr(found.envelope("moment")) == "SampleExtremes(200 samples, 25 columns)"
 
 
 def test_archive(found: sw.Ensemble, tmp_path: Path) -> None:
     path = tmp_path / "found.npz"
     found.to_npz(path)
     with np.load(path) as archive:
-        assert_array_equal(archive["moment_max"], found.moment.max)
-        assert_array_equal(archive["shear_left_min_time"], found.shear_left.min_time)
-        assert_array_equal(archive["axle_loads_static_max"], found.axle_loads.static_max)
+        assert_array_equal(archive["moment_max"], found.envelope("moment").max)
+        assert_array_equal(archive["shear_left_min_time"], found.envelope("shear_left").min_time)
+        assert_array_equal(
+            archive["axle_loads_static_max"], found.envelope("axle_loads").static_max
+        )
         assert str(archive["hash"]) == found.hash
         settings = json.loads(str(archive["settings"]))
     assert settings["ensemble"]["road"]["class"] == "C"
@@ -119,7 +121,7 @@ def test_figures_of_impact_factors(found: sw.Ensemble, quantity: str) -> None:
     (ax,) = figure.axes
     assert "dynamic" in ax.get_ylabel()
     if quantity not in ("reactions",):
-        values = found.impact_factors(quantity)  # type: ignore[arg-type]
+        values = found.impact_factors[quantity]  # type: ignore[index]
         drawn = next(line for line in ax.lines if line.get_label() == "median")
         there = ~np.isnan(values).all(axis=0)
         expected = np.full(values.shape[1], np.nan)
@@ -165,12 +167,14 @@ def test_command(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert f"hash      {expected.hash}" in out
     assert "crossings/s" in out
     with np.load(npz) as archive:
-        assert_array_equal(archive["deflection_min"], expected.deflection.min)
+        assert_array_equal(archive["deflection_min"], expected.envelope("deflection").min)
         assert_array_equal(archive["numbers"], np.arange(3, 23))
     results = json.loads(table.read_text(encoding="utf-8"))
     assert results["hash"] == expected.hash
     percentiles = results["extremes"]["moment"]["max"]
-    assert percentiles[3] == pytest.approx(np.median(expected.moment.max, axis=0).tolist())
+    assert percentiles[3] == pytest.approx(
+        np.median(expected.envelope("moment").max, axis=0).tolist()
+    )
     assert main([*command, "--json", "-"]) == 0
     assert json.loads(capsys.readouterr().out)["hash"] == expected.hash
 

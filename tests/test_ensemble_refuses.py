@@ -161,7 +161,7 @@ def test_rows_and_numbers() -> None:
         found.histories("moment", 2.5)  # type: ignore[arg-type]
     says = 'quantity = "deflection": was not looked at; this ensemble has moment'
     with pytest.raises(ValueError, match=says):
-        found.impact_factors("deflection")
+        _ = found.impact_factors.deflection
     one = ensemble(TRUCK, samples=1, sections=[5.0])
     assert repr(one).startswith("Ensemble(1 sample from 0 of seed 0, 1 section, ")
 

@@ -87,7 +87,7 @@ def check_close(found: sw.Ensemble, sample: int, run: sw.Run, tolerance: float =
     for name in (*found.quantities, "axle_loads"):
         envelope = run.envelope(name)  # type: ignore[arg-type]
         for side in ("max", "min", "static_max", "static_min"):
-            values = np.atleast_2d(getattr(getattr(found, name), side))
+            values = np.atleast_2d(getattr(found.envelope(name), side))
             own = values[sample if len(values) > 1 else 0]
             expected = getattr(envelope, side).value
             assert_allclose(own, expected, rtol=tolerance, atol=tolerance * np.abs(expected).max())
@@ -102,7 +102,7 @@ def test_one_factor_for_all_parts(vehicle: sw.Vehicle, name: str, same: Same) ->
     assert found.shares_geometry
     assert found.failures == ()
     plain = sw.ensemble(BRIDGE, vehicle, samples=3, **GIVEN)
-    assert_array_equal(found.moment.max[1], plain.moment.max[1])
+    assert_array_equal(found.envelope("moment").max[1], plain.envelope("moment").max[1])
     for sample, factor in enumerate(factors):
         alone = found.run(sample)
         same(found, sample, alone)
@@ -154,7 +154,7 @@ def test_springs_share_out_the_static_loads(same: Same) -> None:
     tyres = np.array([[1.0, 1.0, 1.0], [1.0, 2.0, 0.4]])
     found = sw.ensemble(BRIDGE, truck, samples=2, factors={"tyre_stiffness": tyres}, **GIVEN)
     assert np.abs(np.diff(found.static_axle_loads, axis=0)).max() > 5e3
-    assert np.abs(np.diff(found.moment.static_max, axis=0)).max() > 1e3
+    assert np.abs(np.diff(found.envelope("moment").static_max, axis=0)).max() > 1e3
     for sample in range(2):
         same(found, sample, found.run(sample))
         assert_array_equal(found.static_axle_loads[sample], found.run(sample).static_axle_loads)
@@ -172,7 +172,7 @@ def test_trains_vary_in_their_loads(same: Same) -> None:
             )
         values = factors * (train.loads if isinstance(train, sw.ForceTrain) else train.masses)
         again = sw.ensemble(BRIDGE, train, samples=2, values={"body_mass": values}, **GIVEN)
-        assert_allclose(again.moment.max, found.moment.max, rtol=1e-12)
+        assert_allclose(again.envelope("moment").max, found.envelope("moment").max, rtol=1e-12)
 
 
 def test_values_are_factors_of_what_there_is() -> None:
@@ -217,7 +217,9 @@ def test_initial_friction_in_newtons_whatever_the_limit(limit: dict[str, float])
         assert isinstance(truck, sw.Vehicle)
         initial = [axle.initial_friction for axle in truck.axles]
         assert initial == pytest.approx(expected, rel=1e-14)
-        assert found.axle_loads.max[row] == pytest.approx(found.run(row).axle_loads.max(axis=0))
+        assert found.envelope("axle_loads").max[row] == pytest.approx(
+            found.run(row).axle_loads.max(axis=0)
+        )
     tables["values"]["initial_friction"] = 13e3
     with pytest.raises(ValueError, match="within the friction limit of axle 1, 1"):
         sw.ensemble(BRIDGE, TRUCK, samples=2, **tables, **GIVEN)
@@ -325,11 +327,11 @@ def test_steps_are_halved_where_a_sample_needs_it(same: Same) -> None:
     assert halvings == pytest.approx(round(halvings), abs=1e-9)
     same(found, 1, found.run(1))
     plain = sw.ensemble(BRIDGE, TRUCK, samples=1, **given)
-    assert_array_equal(found.moment.max[0], plain.moment.max[0])
+    assert_array_equal(found.envelope("moment").max[0], plain.envelope("moment").max[0])
     # Static extremes are those in the sample's own steps.
     speeds = np.array([4.0, 40.0])
     given = {**GIVEN, "speed": speeds, "advance": 0.3}
     found = sw.ensemble(BRIDGE, TRUCK, samples=2, **given)
-    assert found.moment.static_max.shape == (2, len(found.sections))
+    assert found.envelope("moment").static_max.shape == (2, len(found.sections))
     for sample in range(2):
         same(found, sample, found.run(sample))

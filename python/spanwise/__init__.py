@@ -1,10 +1,11 @@
 """What vehicles do to bridges: dynamic response by a few modes and force summation."""
 
 from spanwise import roads, vehicles
+from spanwise._concat import concat
 from spanwise._core import __version__
 from spanwise._warnings import DampingWarning, PlausibilityWarning
 from spanwise.bridge import Bridge, Modes, Settlement
-from spanwise.case import Case
+from spanwise.case import Case, CaseError
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
 from spanwise.ensemble import ensemble
@@ -38,6 +39,7 @@ __all__ = [
     "Bump",
     "Camber",
     "Case",
+    "CaseError",
     "DampingWarning",
     "Ensemble",
     "Envelope",
@@ -65,9 +67,15 @@ __all__ = [
     "Support",
     "Vehicle",
     "__version__",
+    "concat",
     "convoy",
     "cross",
     "ensemble",
     "roads",
     "vehicles",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is meant for users."""
+    return __all__

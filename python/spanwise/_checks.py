@@ -10,14 +10,16 @@ from collections.abc import Set as AbstractSet
 from itertools import islice
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any, Final, TypeAlias, TypeGuard
+from typing import Any, Final, TypeAlias, TypeGuard, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._keys import suggestion
+from spanwise._keys import alike, suggestion
 from spanwise._shown import LONGEST
 from spanwise._shown import shown as shown
+
+Name = TypeVar("Name", bound=str)
 
 Numbers: TypeAlias = float | Iterable[float]
 
@@ -134,6 +136,14 @@ def choice(key: str, value: object, options: Iterable[str]) -> str:
         near = suggestion(value, allowed)
         raise ValueError(f"{key} = {shown(value)}: must be one of {', '.join(allowed)}{near}")
     return str(value)
+
+
+def named(key: str, value: object, options: Iterable[Name]) -> Name:
+    """The option that is meant, with hyphens or underscores, in singular or plural."""
+    allowed = [*options]
+    meant = alike(value, allowed)
+    choice(key, meant, allowed)
+    return cast("Name", meant)
 
 
 def text(key: str, value: object) -> str:

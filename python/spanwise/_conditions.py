@@ -10,6 +10,7 @@ from typing import Any, Final, Literal, TypeAlias, get_args
 import numpy as np
 
 from spanwise._checks import count, flag, is_list, items, number, numbers, word
+from spanwise._value import Value
 from spanwise._warnings import DampingWarning
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, plain_damping, resolved
@@ -29,8 +30,8 @@ UNDAMPED: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Conditions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Conditions(Value):
     """How vehicles cross, all but their drive and speed.
 
     Attributes
@@ -68,15 +69,19 @@ class Conditions:
         gravity: float,
         lift_off: bool,
         mask: float,
+        stacklevel: int = 3,
     ) -> Conditions:
-        """Arguments of `cross` of the same names; `uneven` tells whether any road is."""
+        """Arguments of `cross` of the same names; `uneven` tells whether any road is.
+
+        Warnings name the line so many calls up.
+        """
         if approach is None:
             approach = APPROACH if uneven else 0.0
         if ramp is None:
             ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
         modes = count("modes", bridge.default_modes() if modes is None else modes)
         if damping is None:
-            warnings.warn(UNDAMPED, DampingWarning, stacklevel=3)
+            warnings.warn(UNDAMPED, DampingWarning, stacklevel=stacklevel)
             damping = 0.0
         if not isinstance(damping, Mapping | np.ndarray) and is_list(damping):
             damping = items("damping", damping)

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 __all__ = [
     "Bridge",
+    "Clock",
     "Crossing",
     "Ensemble",
     "Road",
@@ -13,7 +14,10 @@ __all__ = [
     "__version__",
     "cross",
     "ensemble",
+    "fingerprint",
     "road_classes",
+    "static_loads",
+    "varied",
 ]
 
 __version__: Final[str]
@@ -180,6 +184,20 @@ def road_classes() -> list[tuple[str, float, float | None]]: ...
 
 @final
 class Crossing:
+    @staticmethod
+    def received(
+        bridge: Bridge,
+        vehicles: list[Vehicle],
+        state: bytes,
+        *,
+        modes: int,
+        damping: list[float],
+        damping_matrix: _Array | None,
+        sections: list[float] | None,
+        recovery: str,
+    ) -> Crossing: ...
+    @property
+    def state(self) -> bytes: ...
     @property
     def sections(self) -> NDArray[np.float64]: ...
     @property
@@ -254,8 +272,6 @@ class Ensemble:
     @property
     def shares(self) -> bool: ...
     @property
-    def own_times(self) -> bool: ...
-    @property
     def sections(self) -> _Array: ...
     @property
     def omega(self) -> _Array: ...
@@ -265,13 +281,37 @@ class Ensemble:
     def failures(self) -> list[tuple[int, int | None, str]]: ...
     @property
     def marches(self) -> NDArray[np.uint32]: ...
-    def width(self, name: str) -> int: ...
-    def columns(self, name: str) -> tuple[int, int]: ...
-    def when(self, instants: NDArray[np.uint32]) -> list[_Array]: ...
-    def step(self, sample: int) -> tuple[float, int] | None: ...
-    def vehicle(self, sample: int, number: int) -> tuple[Vehicle, list[_Body]]: ...
-    def static_loads(self) -> _Array: ...
+    @property
+    def widths(self) -> list[tuple[str, int]]: ...
+    @property
+    def columns(self) -> dict[str, tuple[int, int]]: ...
+    @property
+    def clock(self) -> Clock: ...
 
+@final
+class Clock:
+    def __new__(cls, state: bytes) -> Clock: ...
+    @property
+    def state(self) -> bytes: ...
+    def __reduce__(self) -> tuple[Any, tuple[bytes]]: ...
+    def when(
+        self, instants: NDArray[np.uint32], marches: NDArray[np.uint32], speeds: _Array
+    ) -> list[_Array]: ...
+    def step(self, march: int, speed: float) -> tuple[float, int] | None: ...
+    @staticmethod
+    def joined(clocks: list[Clock]) -> tuple[Clock, list[list[int]]]: ...
+
+_Factors: TypeAlias = tuple[str, int, _Array]
+
+def varied(event: list[_Passage], factors: list[_Factors]) -> list[tuple[Vehicle, list[_Body]]]: ...
+def static_loads(
+    kinds: list[list[_Passage]],
+    kind_of: NDArray[np.uint32],
+    count: int,
+    factors: list[_Factors],
+    gravity: float,
+) -> _Array: ...
+def fingerprint(digests: NDArray[np.uint64]) -> int: ...
 def ensemble(
     bridge: Bridge,
     kinds: list[list[_Passage]],
@@ -297,7 +337,7 @@ def ensemble(
     count: int,
     kind_of: NDArray[np.uint32],
     speeds: _Array,
-    factors: list[tuple[str, int, _Array]],
+    factors: list[_Factors],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> Ensemble: ...

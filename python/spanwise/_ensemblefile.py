@@ -3,52 +3,75 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import stat
+from collections.abc import Callable, Iterator, Mapping
+from inspect import signature
 from pathlib import Path
 from typing import Any, BinaryIO, Final
+from zipfile import ZIP_STORED, BadZipFile, ZipFile
 
 import numpy as np
 
+from spanwise import _core
+from spanwise._asked import recipe_of
 from spanwise._files import write_files
-from spanwise._traffictable import is_alone, passage_table
-from spanwise._values import plain
-from spanwise._vehicletable import table_of
+from spanwise._recipe import Recipe
+from spanwise._rows import Rows
+from spanwise._traffictable import is_alone, passage_of, passage_table
+from spanwise._values import from_plain, plain
+from spanwise._vehicletable import table_of, vehicle_of
+from spanwise.bridge import bridge_of
 from spanwise.damping import in_words
 from spanwise.population import FACTORS, Ensemble
-from spanwise.roads import Road
-from spanwise.traffic import plain_drive
+from spanwise.roads import Road, from_table
+from spanwise.traffic import Passage, plain_drive
 
 #: Percentiles of the plain values.
 PERCENTILES: Final = (1, 5, 25, 50, 75, 95, 99)
 
+#: What an archive is called by that is written as here.
+FORMAT: Final = 1
 
-def arrays(ensemble: Ensemble) -> dict[str, Any]:
-    """All extremes by name."""
-    found: dict[str, Any] = {
-        "sections": ensemble.sections,
-        "supports": ensemble.supports,
-        "frequencies": ensemble.frequencies,
-        "numbers": ensemble.first + np.arange(ensemble.samples, dtype=np.uint64),
-        "digests": ensemble.digests,
-        "damping": np.array(in_words(ensemble.settings["damping"], ensemble.frequencies)),
-        "hash": np.array(ensemble.hash),
-        "failures": np.array([each.sample for each in ensemble.failures], dtype=np.uint64),
-        "load_coefficients": ensemble.load_coefficients,
-        "time_off_road": ensemble.time_off_road,
-        "lift_offs": ensemble.lift_offs,
-        "body_accelerations_max": ensemble.body_accelerations.max,
-        "body_accelerations_rms": ensemble.body_accelerations.rms,
-    }
-    kinds = ["shear_left", "shear_right"] if "shear" in ensemble.quantities else []
-    kinds += [each for each in ensemble.quantities if each != "shear"]
-    for name in (*kinds, "axle_loads"):
-        extremes = getattr(ensemble, name)
+#: What of the rows is neither an array nor a name of one.
+LAYOUT: Final = ("columns", "widths", "failures", "shares", "isa", "threads", "elapsed")
+
+#: Columns that have an array for each quantity, and names of others.
+BY_QUANTITY: Final = ("responses", "axle_loads", "statics", "times", "positions")
+NAMES: Final = {"accelerations": "body_accelerations_max", "vibrations": "body_accelerations_rms"}
+
+
+def arrays(ensemble: Ensemble) -> Iterator[tuple[str, Any]]:
+    """All by name, one after the other: times and positions are many, and not kept."""
+    rows = ensemble._rows
+    yield "sections", ensemble.sections
+    yield "supports", ensemble.supports
+    yield "frequencies", ensemble.frequencies
+    yield "numbers", ensemble.first + np.arange(ensemble.samples, dtype=np.uint64)
+    yield "digests", ensemble.digests
+    yield "damping", np.array(in_words(ensemble.settings["damping"], ensemble.frequencies))
+    yield "hash", np.array(ensemble.hash)
+    yield "failures", np.array([each.sample for each in ensemble.failures], dtype=np.uint64)
+    yield "lift_offs", ensemble.off_road.count
+    for key, (low, high) in rows.columns.items():
+        if key not in BY_QUANTITY and high > low:
+            yield NAMES.get(key, key), rows.block(key)
+    for name in (*rows.widths, "axle_loads"):
+        extremes = ensemble._axle_loads() if name == "axle_loads" else ensemble._extremes(name)
         for side in ("max", "min"):
             for suffix in ("", "_time", "_position"):
-                found[f"{name}_{side}{suffix}"] = getattr(extremes, f"{side}{suffix}")
-            found[f"{name}_static_{side}"] = getattr(extremes, f"static_{side}")
-    found["settings"] = np.array(json.dumps(settings(ensemble), allow_nan=False))
-    return found
+                yield f"{name}_{side}{suffix}", getattr(extremes, f"{side}{suffix}")
+            yield f"{name}_static_{side}", getattr(extremes, f"static_{side}")
+    yield "settings", np.array(json.dumps(settings(ensemble), allow_nan=False))
+    # What the ensemble is made again of, beside all these.
+    yield "instants", rows.instants
+    yield "marches", rows.marches
+    yield "at_rest", rows.at_rest
+    yield "omega", rows.omega
+    yield "clock", np.frombuffer(rows.clock.state, dtype=np.uint8)
+    yield (
+        "layout",
+        np.array(json.dumps({"format": FORMAT, **{k: getattr(rows, k) for k in LAYOUT}})),
+    )
 
 
 def write_npz(ensemble: Ensemble, path: Path) -> None:
@@ -58,7 +81,110 @@ def write_npz(ensemble: Ensemble, path: Path) -> None:
 
 def npz_writer(ensemble: Ensemble) -> Callable[[BinaryIO], None]:
     """What writes the archive, array by array."""
-    return lambda stream: np.savez(stream, **arrays(ensemble))
+
+    def write(stream: BinaryIO) -> None:
+        with ZipFile(stream, "w", allowZip64=True) as archive:
+            for name, values in arrays(ensemble):
+                with archive.open(f"{name}.npy", "w", force_zip64=True) as entry:
+                    np.lib.format.write_array(entry, np.asanyarray(values), allow_pickle=False)
+
+    return write
+
+
+def read_npz(path: Path) -> Ensemble:
+    """The ensemble that was written there."""
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise ValueError(f"{path}: is not a regular file; an ensemble is a NumPy archive")
+    try:
+        with ZipFile(path) as members:
+            # What expands could be larger than any memory.
+            if any(each.compress_type != ZIP_STORED for each in members.infolist()):
+                raise ValueError("is compressed, as no archive of an ensemble is")
+        with np.load(path, allow_pickle=False) as archive:
+            return _read(archive)
+    except KeyError as error:
+        raise ValueError(f"{path}: is not the archive of an ensemble: {error.args[0]}") from error
+    except (ValueError, TypeError, EOFError, BadZipFile, MemoryError) as error:
+        raise ValueError(f"{path}: is not the archive of an ensemble: {error}") from error
+
+
+def _read(archive: Any) -> Ensemble:
+    layout = json.loads(str(archive["layout"]))
+    if layout.pop("format") != FORMAT:
+        raise ValueError("is of another version of spanwise")
+    columns = {key: (int(low), int(high)) for key, (low, high) in layout.pop("columns").items()}
+    recipe = _recipe(from_plain(json.loads(str(archive["settings"]))))
+    width = max(high for _, high in columns.values())
+    numbers = np.empty((recipe.samples, width))
+    axles = (columns["axle_loads"][1] - columns["axle_loads"][0]) // 2
+    for name, start, end in _places(columns, layout["widths"], axles):
+        numbers[:, start:end] = _of_shape(archive, name, (recipe.samples, end - start))
+    rows = Rows(
+        numbers=numbers,
+        instants=_of_shape(archive, "instants", (recipe.samples, archive["instants"].shape[-1])),
+        digests=_of_shape(archive, "digests", (recipe.samples,)),
+        marches=_of_shape(archive, "marches", (recipe.samples,)),
+        at_rest=archive["at_rest"],
+        clock=_core.Clock(archive["clock"].tobytes()),
+        sections=archive["sections"],
+        omega=archive["omega"],
+        columns=columns,
+        widths={name: int(count) for name, count in layout.pop("widths").items()},
+        failures=[(int(row), step, str(cause)) for row, step, cause in layout.pop("failures")],
+        **layout,
+    )
+    if rows.hash != str(archive["hash"]):
+        raise ValueError(f"hash = {archive['hash']}: is not that of its samples, {rows.hash}")
+    return Ensemble(recipe, rows)
+
+
+def _places(
+    columns: Mapping[str, tuple[int, int]], widths: Mapping[str, int], axles: int
+) -> Iterator[tuple[str, int, int]]:
+    """Which columns of the numbers each array is."""
+    loads = {"axle_loads": axles}
+    own: dict[str, list[tuple[str, Mapping[str, int]]]] = {
+        "responses": [("{}_{}", widths)],
+        "axle_loads": [("{}_{}", loads)],
+        "statics": [("{}_static_{}", widths)],
+        "times": [("{}_{}_time", widths), ("{}_{}_time", loads)],
+        "positions": [("{}_{}_position", widths), ("{}_{}_position", loads)],
+    }
+    for key, (at, end) in columns.items():
+        if key not in own and end > at:
+            yield NAMES.get(key, key), at, end
+        for form, names in own.get(key, []) if end > at else []:
+            for side in ("max", "min"):
+                for name, width in names.items():
+                    yield form.format(name, side), at, at + width
+                    at += width
+
+
+def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
+    values = archive[name]
+    if values.shape != shape:
+        raise ValueError(f"{name} = shape {values.shape}: must be {shape}")
+    return values
+
+
+def _recipe(tables: Mapping[str, Any]) -> Recipe:
+    """What `settings` tells, as `ensemble` would understand it."""
+    given = dict(tables["ensemble"])
+    events = [
+        [Passage(vehicle=vehicle_of(each["vehicle"], _nowhere))]
+        if isinstance(each, Mapping)
+        else [passage_of(one, Path(), _nowhere) for one in each]
+        for each in tables["events"]
+    ]
+    given["road"] = from_table(given["road"])
+    optional = dict.fromkeys(signature(recipe_of).parameters)
+    del optional["bridge"], optional["vehicle"]
+    recipe, _ = recipe_of(bridge_of(tables["bridge"]), events, **{**optional, **given})
+    return recipe
+
+
+def _nowhere(_: str) -> str:
+    return ""
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:
@@ -83,7 +209,7 @@ def settings(ensemble: Ensemble) -> dict[str, Any]:
 
 def as_dict(ensemble: Ensemble) -> dict[str, Any]:
     """Main figures as plain values: percentiles of impact factors and of extremes."""
-    sound = ~np.isnan(ensemble.axle_loads.max).all(axis=1)
+    sound = ~np.isnan(ensemble.envelope("axle_loads").max).all(axis=1)
     found: dict[str, Any] = {
         "samples": ensemble.samples,
         "seed": ensemble.seed,
@@ -106,13 +232,13 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
     }
     if sound.any():
         for name in (*ensemble.quantities, "axle_loads"):
-            extremes = getattr(ensemble, name)
+            extremes = ensemble.envelope(name)
             found["extremes"][name] = {
                 side: _percentiles(getattr(extremes, side)) for side in ("max", "min")
             }
         for factor, (name, _) in FACTORS.items():
             if name in (*ensemble.quantities, "axle_loads"):
-                found["impact_factors"][factor] = _percentiles(ensemble.impact_factors(factor))
+                found["impact_factors"][factor] = _percentiles(ensemble.impact_factors[factor])
     table: dict[str, Any] = plain(found)
     return table
 

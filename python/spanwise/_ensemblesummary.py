@@ -171,15 +171,15 @@ def _alike(recipe: Recipe) -> bool:
 
 
 def _step(ensemble: Ensemble) -> str:
-    core, column = ensemble._core, ensemble._recipe.speeds.column
-    if ensemble.samples > 0 and core.step(0) is not None:
+    rows, column = ensemble._rows, ensemble._recipe.front_speeds
+    if ensemble.samples > 0 and rows.step(0, float(column[0])) is not None:
         # All samples of a march take steps of one way: the fastest has the shortest of them.
-        marches = np.asarray(core.marches)
+        marches = rows.marches
         speeds = np.broadcast_to(column, len(marches))
         order = np.lexsort((speeds, marches))
         first = np.flatnonzero(np.diff(marches[order], prepend=-1))
         last = np.append(first[1:] - 1, len(order) - 1)
-        found = [core.step(int(i)) for i in order[np.concatenate([first, last])]]
+        found = [rows.step(i, speeds[i]) for i in order[np.concatenate([first, last])]]
         return f"{_span(np.array([each[0] for each in found if each is not None]), '.4g')} s"
     given = ensemble.settings.get("step")
     if given is not None:
@@ -202,7 +202,7 @@ def _extremes(ensemble: Ensemble) -> Iterator[str]:
     for name, quantity, side, scale in ROWS:
         if quantity != "axle_loads" and quantity not in ensemble.quantities:
             continue
-        extremes: SampleExtremes = getattr(ensemble, quantity)
+        extremes: SampleExtremes = ensemble.envelope(quantity)
         if extremes.max.shape[1] == 0:
             continue
         dynamic, static = (scale * each for each in _one_side(extremes, side))
@@ -253,7 +253,7 @@ def _one_side(extremes: SampleExtremes, side: str) -> tuple[Array, Array]:
     )
 
 
-def _by_sense(extremes: SampleExtremes, sense: Sense) -> tuple[Array, Array]:
+def by_sense(extremes: SampleExtremes, sense: Sense) -> tuple[Array, Array]:
     """Dynamic and static values by sample, larger where they matter; one row where all share it."""
     sign = -1.0 if sense == "negative" else 1.0
     dynamic, static = _one_side(extremes, SIDES[sense])
@@ -289,9 +289,9 @@ def _factors(ensemble: Ensemble) -> Iterator[str]:
     for name, (quantity, sense) in FACTORS.items():
         if quantity != "axle_loads" and quantity not in ensemble.quantities:
             continue
-        extremes: SampleExtremes = getattr(ensemble, quantity)
-        where = governing(*_by_sense(extremes, sense))
-        found = ensemble.impact_factors(name)[:, where]
+        extremes: SampleExtremes = ensemble.envelope(quantity)
+        where = governing(*by_sense(extremes, sense))
+        found = ensemble.impact_factors[name][:, where]
         at = _at(extremes, where, name)
         yield _factor_row(_all_the_way(ensemble, name, quantity), found, at)
     yield (
@@ -308,8 +308,8 @@ def _largest(ensemble: Ensemble) -> Iterator[str]:
     for name, (quantity, sense) in FACTORS.items():
         if quantity not in ensemble.quantities:
             continue
-        extremes: SampleExtremes = getattr(ensemble, quantity)
-        dynamic, static = map(_along, _by_sense(extremes, sense))
+        extremes: SampleExtremes = ensemble.envelope(quantity)
+        dynamic, static = map(_along, by_sense(extremes, sense))
         magnitude = _along(np.atleast_2d(_one_side(extremes, "both")[1]))
         found = np.full(len(dynamic), np.nan)
         there = np.broadcast_to(static > ROUNDING * magnitude, found.shape)
@@ -351,9 +351,9 @@ def _ride(ensemble: Ensemble) -> Iterator[str]:
         "root mean square of the axle loads about their static values, on the bridge, mean of the "
         f"samples: {', '.join(f'{100.0 * each:.1f}' for each in coefficients)} %"
     )
-    off = (ensemble.lift_offs > 0).any(axis=1).sum()
+    off = (ensemble.off_road.count > 0).any(axis=1).sum()
     if off > 0:
-        longest = np.nanmax(ensemble.time_off_road)
+        longest = np.nanmax(ensemble.off_road.total)
         yield f"wheels leave the road in {off} samples, in one for {longest:.3f} s in all"
     else:
         yield "wheels never leave the road"

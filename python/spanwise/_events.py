@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from spanwise import _core
 from spanwise._checks import array, as_array, first_of, shown
 from spanwise._traffictable import is_random
+from spanwise._value import Value
 from spanwise._wheels import Wheels
 from spanwise.crossing import passages_of
 from spanwise.roads import ISO8608, Road, Sum
@@ -109,8 +110,8 @@ def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[
     return kinds.astype(np.uint32)
 
 
-@dataclass(frozen=True)
-class Speeds:
+@dataclass(frozen=True, eq=False, repr=False)
+class Speeds(Value):
     """The speeds of an ensemble [m/s].
 
     Attributes

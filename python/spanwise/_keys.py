@@ -50,6 +50,17 @@ class Keys:
             raise ValueError(f"missing {', '.join(missing)}")
 
 
+def alike(name: object, known: Iterable[str]) -> object:
+    """The known name that differs in no more than hyphens and a plural s, or what was given."""
+
+    def bare(each: str) -> str:
+        return each.lower().replace("_", "-").replace(" ", "-").removesuffix("s")
+
+    if not isinstance(name, str):
+        return name
+    return next((each for each in known if bare(each) == bare(name)), name)
+
+
 #: How alike a word must be to be meant, each of several, one of several, and all written as one.
 _ALIKE: Final = 0.6
 _EACH_ALIKE: Final = 0.75

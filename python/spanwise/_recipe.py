@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._conditions import Conditions
-from spanwise._events import Event, Speeds
+from spanwise._events import Event, Speeds, core_passage
+from spanwise._rows import Rows
+from spanwise._value import Value
 from spanwise._variation import Factors
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
@@ -24,9 +26,24 @@ from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 from spanwise.vehicles import AnyVehicle
 
+Array: TypeAlias = NDArray[np.float64]
+Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
 
-@dataclass(frozen=True, eq=False)
-class Recipe:
+#: What static axle loads depend on: masses, and springs that share them out.
+SHARED_OUT: Final = ("body_mass", "tyre_stiffness", "suspension_stiffness")
+
+
+def cores(quantities: Sequence[str]) -> list[str]:
+    """The kinds of response that the core knows for these quantities."""
+    return [
+        name
+        for each in quantities
+        for name in (("shear_left", "shear_right") if each == "shear" else (each,))
+    ]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Recipe(Value):
     """What `ensemble` was asked for, checked.
 
     Attributes
@@ -51,7 +68,56 @@ class Recipe:
     own: ISO8608 | None
     factors: list[Factors]
     conditions: Conditions
+    quantities: tuple[Quantity, ...]
+    advance: float | None
     settings: dict[str, Any]
+
+    @property
+    def varies_loads(self) -> bool:
+        """Whether static axle loads differ from sample to sample."""
+        return len(self.events) > 1 or any(each.name in SHARED_OUT for each in self.factors)
+
+    @property
+    def front_speeds(self) -> Array:
+        """Speeds of the first vehicles at the start [m/s]: of each sample, or of all."""
+        column = self.speeds.column
+        own = [event[0].speed for event in self.events]
+        if len(own) == 1 and own[0] is not None:
+            return np.array([own[0]])
+        if len(column) > 1:
+            column = column.reshape(self.samples, -1)[:, 0]
+        if all(each is None for each in own):
+            return np.ascontiguousarray(column)
+        by_kind = np.array([np.nan if each is None else each for each in own])[self.kinds]
+        return np.where(np.isnan(by_kind), column, by_kind)
+
+    @property
+    def speeds_of_all(self) -> Array:
+        """Speeds at the start [m/s], shape (sample, 1) or (sample, vehicle); NaN if by time."""
+        vehicles = max(map(len, self.events))
+        column = self.speeds.column
+        given = column.reshape(1 if len(column) == 1 else self.samples, -1)
+        found = np.broadcast_to(given, (self.samples, vehicles)).copy()
+        for number, event in enumerate(self.events):
+            rows = self.kinds == number if len(self.events) > 1 else slice(None)
+            for k in range(vehicles):
+                if k >= len(event) or isinstance(event[k].drive or self.drive, SpeedsInTime):
+                    found[rows, k] = np.nan
+                elif event[k].speed is not None:
+                    found[rows, k] = event[k].speed
+        return found
+
+    def static_loads(self) -> Array:
+        """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
+        varied = self.varies_loads
+        loads = _core.static_loads(
+            [[core_passage(each, own_speed=True) for each in event] for event in self.events],
+            self.kinds if varied else self.kinds[:1],
+            self.samples if varied else 1,
+            [each.core for each in self.factors] if varied else [],
+            self.conditions.core["gravity"],
+        )
+        return loads if varied else loads[0]
 
     def event(self, sample: int) -> Event:
         """Who crosses in a sample, as they are before factors."""
@@ -63,13 +129,24 @@ class Recipe:
             return self.road
         return total([self.road, replace(self.own, seed=self.seed, sample=self.first + sample)])
 
-    def run(self, sample: int, core: _core.Ensemble) -> Run:
+    def vehicles(self, sample: int) -> list[AnyVehicle]:
+        """Those of a sample, with its factors."""
+        event = self.event(sample)
+        if all(each.name.startswith("bridge_") for each in self.factors):
+            return [each.vehicle for each in event]
+        varied = _core.varied(
+            [core_passage(each, own_speed=True) for each in event],
+            [each.of(sample).core for each in self.factors],
+        )
+        return [
+            _scaled(passage.vehicle, *each) for passage, each in zip(event, varied, strict=True)
+        ]
+
+    def run(self, sample: int, rows: Rows) -> Run:
         """The sample by a crossing of its own."""
         passages = []
-        for number, passage in enumerate(self.event(sample)):
-            vehicle = passage.vehicle
-            if any(not each.name.startswith("bridge_") for each in self.factors):
-                vehicle = _scaled(vehicle, *core.vehicle(sample, number))
+        vehicles = self.vehicles(sample)
+        for number, (passage, vehicle) in enumerate(zip(self.event(sample), vehicles, strict=True)):
             speed = passage.speed
             if speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
                 speed = self.speeds.of(sample, number, self.samples)
@@ -77,15 +154,16 @@ class Recipe:
         given: dict[str, Any] = {**self.conditions.core}
         matrix = given.pop("damping_matrix")
         given["damping"] = given["damping"] if matrix is None else matrix
-        found = core.step(sample)
+        speeds = self.front_speeds
+        found = rows.step(sample, float(speeds[sample if len(speeds) > 1 else 0]))
         if found is not None:
             given["step"] = found[0]
         bridge = self._bridge(sample, given)
         common: dict[str, Any] = {}
-        speeds = {each.speed for each in passages}
-        if speeds != {None} and len(speeds) == 1 and None not in speeds:
+        common_speeds = {each.speed for each in passages}
+        if len(common_speeds) == 1 and None not in common_speeds:
             # As one would write it down.
-            common["speed"] = speeds.pop()
+            common["speed"] = common_speeds.pop()
             passages = [replace(each, speed=None) for each in passages]
         return cross(
             bridge,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from spanwise._checks import array, first_of, shown
 from spanwise._events import Event
 from spanwise._keys import suggestion
+from spanwise._value import Value
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
@@ -49,12 +50,17 @@ OF_BRIDGES: Final = tuple(name for name, attribute in ATTRIBUTES.items() if attr
 ABOVE_ZERO: Final = ("body_mass", "pitch_inertia", "tyre_stiffness", "suspension_stiffness")
 
 
-@dataclass(frozen=True)
-class Factors:
+@dataclass(frozen=True, eq=False, repr=False)
+class Factors(Value):
     """Factors on one parameter, of shape (1, 1), (samples, 1) or (samples, parts)."""
 
     name: str
     values: Array
+
+    def of(self, sample: int) -> Factors:
+        """Those of one sample."""
+        row = sample if len(self.values) > 1 else 0
+        return Factors(self.name, self.values[row : row + 1])
 
     @property
     def core(self) -> tuple[str, int, Array]:

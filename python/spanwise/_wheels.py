@@ -66,6 +66,11 @@ class Wheels:
         """Distance from the first to the last axle [m]."""
         return float(self.axle_positions[0] - self.axle_positions[-1])
 
+    def _row(self) -> str:
+        """How many axles, and over what length, for a short text."""
+        axles = len(self.axle_positions)
+        return f"{axles} axle{'s' if axles > 1 else ''}, {self.wheelbase:.4g} m"
+
     @property
     def coordinates(self) -> list[str]:
         """Names of the independent coordinates, such as ``body 1 heave`` and ``axle 3 hop``."""

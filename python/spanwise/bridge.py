@@ -23,6 +23,8 @@ from spanwise._checks import (
     shown,
     word,
 )
+from spanwise._keys import alike
+from spanwise._value import Value, key, same
 from spanwise.layout import (
     AlongBeam,
     AnySupport,
@@ -47,8 +49,8 @@ Side: TypeAlias = Literal["left", "right"]
 Structure: TypeAlias = Literal["actual", "basic"]
 
 
-@dataclass(frozen=True, eq=False)
-class Modes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Modes(Value):
     """Undamped natural modes, lowest first, scaled to unit modal mass.
 
     The component of largest magnitude of each shape is positive.
@@ -75,7 +77,7 @@ class Modes:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Settlement:
+class Settlement(Value):
     """What settling supports do to a bridge at rest.
 
     Attributes
@@ -431,9 +433,16 @@ class Bridge:
         bridge._arguments = arguments
         return bridge
 
+    def __eq__(self, other: object) -> bool:
+        """Whether both are made of the same arguments."""
+        return same(self._arguments, other._arguments) if type(other) is Bridge else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(key(self._arguments))
+
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled as its arguments, so that it can go to another process."""
-        return _rebuilt, (self.arguments,)
+        return bridge_of, (self.arguments,)
 
     def __repr__(self) -> str:
         held = "".join(f", {kind} at {x:g} m" for x, kind in self.supports)
@@ -728,7 +737,7 @@ class Bridge:
         """
         where = array("x", x)
         line = self._core.influence_line(
-            word("quantity", quantity, *get_args(Quantity)),
+            word("quantity", alike(quantity, get_args(Quantity)), *get_args(Quantity)),
             number("at", at),
             where.ravel(),
             word("structure", structure, *get_args(Structure)),
@@ -745,7 +754,8 @@ class Bridge:
         return BridgePlot(self)
 
 
-def _rebuilt(arguments: dict[str, Any]) -> Bridge:
+def bridge_of(arguments: Mapping[str, Any]) -> Bridge:
+    """The bridge of these `Bridge.arguments`."""
     for name in ("from_flexibility", "from_modes"):
         if name in arguments:
             bridge: Bridge = getattr(Bridge, name)(**arguments[name])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -15,6 +14,8 @@ from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
 from spanwise._keys import Keys, suggestion
 from spanwise._traffictable import OWN, files_in, passage_of, road_in
+from spanwise._value import Hashed
+from spanwise._values import from_plain
 from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
@@ -45,14 +46,12 @@ TABLES: Final = {
     "road": "[road]",
     "crossing": "[crossing]",
 }
-#: Most tables and lists within each other.
-MAX_DEPTH: Final = 32
 #: A vehicle among several, and what of it, in a message about a crossing.
 VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
 
-@dataclass(frozen=True, eq=False)
-class Case:
+@dataclass(frozen=True, eq=False, repr=False)
+class Case(Hashed):
     """A bridge, what crosses it and how, as a case file describes it.
 
     The keys of ``[bridge]`` are the arguments of `Bridge`; those of ``[crossing]`` the keyword
@@ -114,8 +113,8 @@ class Case:
     passages: tuple[Passage, ...]
     crossing: dict[str, Any] = field(default_factory=dict)
     road: Road | None = None
-    source: str = "case"
-    files: tuple[Path, ...] = ()
+    source: str = field(default="case", compare=False)
+    files: tuple[Path, ...] = field(default=(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.bridge, Bridge):
@@ -193,7 +192,7 @@ class Case:
         """
         checks_text("source", source)
         with _errors_in(source):
-            plain = _with_infinity(mapping("tables", tables, "the tables of a case by name"))
+            plain = from_plain(mapping("tables", tables, "the tables of a case by name"))
         return cls._of(plain, source, file_path("folder", folder))
 
     @classmethod
@@ -279,21 +278,6 @@ def _errors_in(place: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise CaseError(f"{place}: {error}") from error
-
-
-def _with_infinity(value: Any, name: str = "tables", depth: int = 0) -> Any:
-    """The tables with infinity in place of its name; `name` is that of the value."""
-    if isinstance(value, Mapping | list | tuple) and depth > MAX_DEPTH:
-        raise ValueError(f"{name} = {shown(value)}: has more than {MAX_DEPTH} levels")
-    if isinstance(value, Mapping):
-        before = f"{name}." if depth else ""
-        return {
-            key: _with_infinity(each, f"{before}{key}" if isinstance(key, str) else name, depth + 1)
-            for key, each in value.items()
-        }
-    if isinstance(value, list | tuple):
-        return [_with_infinity(each, name, depth + 1) for each in value]
-    return math.inf if isinstance(value, str) and value == "inf" else value
 
 
 def _check_tables(tables: Mapping[Any, Any]) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from spanwise._value import Value
 
 Array: TypeAlias = NDArray[np.float64]
 Sense: TypeAlias = Literal["positive", "negative", "either"]
@@ -26,8 +28,8 @@ def frozen(values: Array) -> Array:
     return values
 
 
-@dataclass(frozen=True, eq=False)
-class SampleExtremes:
+@dataclass(frozen=True, eq=False, repr=False)
+class SampleExtremes(Value):
     """Largest and smallest values of a quantity in every sample of an ensemble.
 
     Arrays have one row for each sample and one column for each section (or support, clamp, axle);
@@ -49,19 +51,30 @@ class SampleExtremes:
     min: Array
     static_max: Array
     static_min: Array
-    _moments: Callable[[bool], Moments]
+    _moments: Callable[[bool], Moments] = field(compare=False)
 
     @cached_property
-    def _when(self) -> Callable[[bool], Moments]:
-        kept: dict[bool, Moments] = {}
+    def _largest(self) -> Moments:
+        time, position = self._moments(True)
+        return frozen(time), frozen(position)
 
-        def when(largest: bool) -> Moments:
-            if largest not in kept:
-                time, position = self._moments(largest)
-                kept[largest] = frozen(time), frozen(position)
-            return kept[largest]
+    @cached_property
+    def _smallest(self) -> Moments:
+        time, position = self._moments(False)
+        return frozen(time), frozen(position)
 
-        return when
+    def _when(self, largest: bool) -> Moments:
+        return self._largest if largest else self._smallest
+
+    def _parts(self) -> Iterator[object]:
+        """What is compared: times and positions too."""
+        yield from super()._parts()
+        yield from (self._largest, self._smallest)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled with its times and positions."""
+        own = [getattr(self, each.name) for each in fields(self) if each.compare]
+        return SampleExtremes, (*own, Known(self._largest, self._smallest))
 
     @property
     def max_time(self) -> Array:
@@ -89,22 +102,13 @@ class SampleExtremes:
     def merged(self, other: SampleExtremes) -> SampleExtremes:
         """The larger of the largest and the smaller of the smallest: a shear on both sides."""
 
-        def moments(largest: bool) -> Moments:
-            pairs = (self.max, other.max) if largest else (other.min, self.min)
-            second = pairs[1] > pairs[0]
-            mine, others = self._when(largest), other._when(largest)
-            return (
-                np.where(second, others[0], mine[0]),
-                np.where(second, others[1], mine[1]),
-            )
-
         return SampleExtremes(
             self.x,
             frozen(larger(self.max, other.max)),
             frozen(-larger(-self.min, -other.min)),
             frozen(larger(self.static_max, other.static_max)),
             frozen(-larger(-self.static_min, -other.static_min)),
-            moments,
+            Merged(self, other),
         )
 
     def factors(self, sense: Sense, mask: float) -> Array:
@@ -128,6 +132,32 @@ class SampleExtremes:
         result = np.full(dynamic.shape, np.nan)
         np.divide(dynamic, static, out=result, where=divisible)
         return result
+
+
+@dataclass(frozen=True)
+class Known:
+    """Times and positions that are known already."""
+
+    largest: Moments
+    smallest: Moments
+
+    def __call__(self, largest: bool) -> Moments:
+        return self.largest if largest else self.smallest
+
+
+@dataclass(frozen=True)
+class Merged:
+    """Times and positions of the larger or smaller of two."""
+
+    one: SampleExtremes
+    other: SampleExtremes
+
+    def __call__(self, largest: bool) -> Moments:
+        one, other = self.one, self.other
+        pairs = (one.max, other.max) if largest else (other.min, one.min)
+        second = pairs[1] > pairs[0]
+        mine, others = one._when(largest), other._when(largest)
+        return np.where(second, others[0], mine[0]), np.where(second, others[1], mine[1])
 
 
 def larger(a: Array, b: Array) -> Array:

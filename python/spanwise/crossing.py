@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from spanwise import _core
 from spanwise._checks import number, shown
+from spanwise._computed import Computed
 from spanwise._conditions import Conditions, Recovery
 from spanwise._plausible import doubt
 from spanwise._remarks import remarks
@@ -178,7 +179,8 @@ def cross(
         **conditions.settings,
         "step": core.step,
     }
-    run = Run(bridge, passages, surface, settings, core)
+    computed = Computed(bridge, passages, conditions.core, core)
+    run = Run(bridge, passages, surface, settings, computed)
     doubt(
         bridge,
         run.frequencies[0],

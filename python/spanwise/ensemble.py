@@ -5,45 +5,29 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final, TypeAlias, get_args
+from typing import TypeAlias
 
 from numpy.typing import ArrayLike
 
 from spanwise import _core
-from spanwise._checks import choice, count, flag, number, shown
-from spanwise._conditions import Conditions, Recovery
-from spanwise._events import (
-    core_passage,
-    core_road,
-    events_of,
-    is_simple,
-    kind_column,
-    own_road,
-    refuse_unused,
-    speeds_by_kind,
-    speeds_of,
-    speeds_told,
-)
+from spanwise._asked import recipe_of
+from spanwise._checks import count, shown
+from spanwise._conditions import Recovery
+from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
 from spanwise._plausible import doubt
 from spanwise._progress import Bar
-from spanwise._recipe import Recipe
-from spanwise._variation import factors_of, idle, refuse_overdamped
+from spanwise._recipe import Quantity, cores
+from spanwise._rows import Rows
+from spanwise._variation import idle
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
-from spanwise.crossing import check_speed, surface_of
 from spanwise.damping import Damping
-from spanwise.population import Ensemble, Quantity, _cores
+from spanwise.population import Ensemble
 from spanwise.roads import Road
-from spanwise.traffic import Drive, Passage, core_drive, drive_of
+from spanwise.traffic import Drive, Passage, core_drive
 from spanwise.vehicles import AnyVehicle
 
 Event: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
-
-#: Most samples: they are numbered in 32 bits.
-MOST_SAMPLES: Final = 2**32 - 1
-
-#: Quantities that a bridge given from outside may come without, as it names them.
-NAMES: Final = {"shear": "shear-left", "reactions": "reaction", "clamp_moments": "clamp-moment"}
 
 
 def ensemble(
@@ -180,57 +164,53 @@ def ensemble(
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
-    if not isinstance(bridge, Bridge):
-        raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
-    events = events_of(vehicle)
-    surface = surface_of(road)
-    samples, seed, first = count("samples", samples), count("seed", seed), count("first", first)
-    if samples > MOST_SAMPLES:
-        raise ValueError(f"samples = {samples}: must be at most {MOST_SAMPLES}")
-    advance = None if advance is None else number("advance", advance)
-    driven = drive_of(drive)
-    own_roads = flag("own_roads", own_roads)
-    kinds = kind_column(kind, events, samples)
-    speeds = speeds_of(speed, events, samples)
-    check_speed(events, None if speed is None else float(speeds.column[:1].sum()), driven)
-    refuse_unused(speeds, events, driven)
-    shared, own = own_road(surface, events, own_roads)
-    varied = factors_of(factors, values, events, kinds, samples)
-    conditions = Conditions.of(
+    recipe, speeds = recipe_of(
         bridge,
-        uneven=own is not None
-        or not all((each.road or shared).is_smooth for event in events for each in event),
+        vehicle,
+        samples=samples,
+        seed=seed,
+        first=first,
+        speed=speed,
+        road=road,
+        own_roads=own_roads,
+        kind=kind,
+        factors=factors,
+        values=values,
         modes=modes,
+        drive=drive,
         damping=damping,
         approach=approach,
         ramp=ramp,
         tail=tail,
         sections=sections,
+        quantities=quantities,
         recovery=recovery,
+        advance=advance,
         step=step,
         beta=beta,
         gravity=gravity,
         lift_off=lift_off,
         mask=mask,
     )
-    refuse_overdamped(varied, conditions.core["damping"], first)
-    for remark in idle(varied, events, conditions.core):
+    conditions, events = recipe.conditions, recipe.events
+    for remark in idle(recipe.factors, events, conditions.core):
         warnings.warn(remark, UserWarning, stacklevel=2)
-    simple = all(is_simple(event, driven) for event in events)
+    simple = all(is_simple(event, recipe.drive) for event in events)
     doubt(
         bridge,
         bridge.modes(conditions.modes).frequencies[0],
         events,
         speed=float(speeds.column.max(initial=0.0)),
-        drive=driven,
-        road=surface,
+        drive=recipe.drive,
+        road=recipe.settings["road"],
         gravity=conditions.core["gravity"],
         # Side by side they take no longer ways than by default, whatever the step is.
         step=None if simple else conditions.core["step"],
-        advance=advance if simple else None,
+        advance=recipe.advance if simple else None,
     )
-    looked_at = _quantities(bridge, quantities)
-    column = speeds_by_kind(speeds, events, kinds, samples) if simple else speeds
+    column = speeds
+    if simple:
+        column = speeds_by_kind(speeds, events, recipe.kinds, recipe.samples)
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
     if progress is True:
@@ -241,16 +221,16 @@ def ensemble(
         core = _core.ensemble(
             bridge._core,
             [[core_passage(each, own_speed=not simple) for each in event] for event in events],
-            drive=core_drive(driven),
-            road=shared._core,
-            own_road=core_road(own, seed),
-            advance=advance,
-            quantities=_cores(looked_at),
-            first=first,
-            count=samples,
-            kind_of=kinds,
+            drive=core_drive(recipe.drive),
+            road=recipe.road._core,
+            own_road=core_road(recipe.own, recipe.seed),
+            advance=recipe.advance,
+            quantities=cores(recipe.quantities),
+            first=recipe.first,
+            count=recipe.samples,
+            kind_of=recipe.kinds,
             speeds=column.column,
-            factors=[each.core for each in varied],
+            factors=[each.core for each in recipe.factors],
             threads=None if threads is None else count("threads", threads),
             progress=listener,
             **conditions.core,
@@ -259,60 +239,4 @@ def ensemble(
         # The line ends also where the computation does not.
         if isinstance(listener, Bar):
             listener.close()
-    told = speeds_told(speeds, events, kinds, samples, driven)
-    settings: dict[str, Any] = {
-        "samples": samples,
-        "seed": seed,
-        "first": first,
-        "speed": told.given,
-        "road": surface,
-        "own_roads": own_roads,
-        "kind": kinds if len(events) > 1 else None,
-        "factors": {each.name: each.plain for each in varied} or None,
-        "modes": conditions.modes,
-        "drive": driven,
-        **conditions.settings,
-        "sections": conditions.core["sections"],
-        "quantities": list(looked_at),
-        "advance": advance,
-        "step": conditions.core["step"],
-    }
-    recipe = Recipe(
-        bridge=bridge,
-        events=events,
-        kinds=kinds,
-        samples=samples,
-        first=first,
-        seed=seed,
-        drive=driven,
-        speeds=told,
-        road=shared,
-        own=own,
-        factors=varied,
-        conditions=conditions,
-        settings={key: value for key, value in settings.items() if value is not None},
-    )
-    return Ensemble(bridge, recipe, looked_at, core)
-
-
-def _quantities(bridge: Bridge, given: object) -> list[Quantity]:
-    """What is looked at, in the order of the responses."""
-    names: tuple[Quantity, ...] = get_args(Quantity)
-    clamped = len(bridge.clamps) > 0
-    there = [name for name in names if NAMES.get(name, name) not in bridge.missing]
-    if given is None:
-        return [name for name in there if clamped or name != "clamp_moments"]
-    if not isinstance(given, list | tuple) or not given:
-        raise ValueError(f"quantities = {shown(given)}: must be a list of {', '.join(names)}")
-    for i, each in enumerate(given):
-        choice(f"quantities[{i}]", each, names)
-        if each not in there:
-            raise ValueError(
-                f"quantities[{i}] = {shown(each)}: this bridge was given without influence lines "
-                "of it"
-            )
-        if each == "clamp_moments" and not clamped:
-            raise ValueError(
-                f"quantities[{i}] = {shown(each)}: no support of this bridge holds the rotation"
-            )
-    return [name for name in names if name in given]
+    return Ensemble(recipe, Rows.of(core))

@@ -9,6 +9,7 @@ from typing import Any, Final, TypeAlias
 
 from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
 from spanwise._keys import suggestion
+from spanwise._value import Hashed
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
 TAPER_PIECES: Final = 32
@@ -45,8 +46,8 @@ class Support:
         return rigid.get((self.vertical, self.rotation), "elastic")
 
 
-@dataclass(frozen=True, eq=False)
-class Along:
+@dataclass(frozen=True, eq=False, repr=False)
+class Along(Hashed):
     """EI or mass that varies along the beam.
 
     A stretch of linear EI is cut into equal pieces, each with the harmonic mean of its EI. The

@@ -8,30 +8,45 @@ from functools import cached_property
 from html import escape
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import choice, file_path, is_list, items, shown, whole
+from spanwise._checks import file_path, is_list, items, named, shown, whole
 from spanwise._conditions import masked
 from spanwise._recipe import Recipe
-from spanwise.bridge import Bridge
+from spanwise._renamed import renamed
+from spanwise._rows import Rows
+from spanwise._value import Value
 from spanwise.columns import Array, Moments, SampleExtremes, Sense, frozen
 from spanwise.run import Run
 
 if TYPE_CHECKING:
-    from spanwise import _core
+    import pandas as pd
+
+    from spanwise._frames import By
     from spanwise.plotting import EnsemblePlot
 
-Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
 Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"]
 History: TypeAlias = Literal[
     "deflection", "moment", "shear_left", "shear_right", "reactions", "clamp_moments", "axle_loads"
 ]
 
+#: What extremes are kept of, if it was looked at.
+Looked: TypeAlias = Literal[
+    "deflection",
+    "moment",
+    "shear",
+    "shear_left",
+    "shear_right",
+    "reactions",
+    "clamp_moments",
+    "axle_loads",
+]
+
 #: Quantity and sense of every impact factor, as for a single crossing.
-FACTORS: dict[Factor, tuple[str, Sense]] = {
+FACTORS: dict[Factor, tuple[Looked, Sense]] = {
     "deflection": ("deflection", "positive"),
     "sagging": ("moment", "positive"),
     "hogging": ("moment", "negative"),
@@ -39,9 +54,6 @@ FACTORS: dict[Factor, tuple[str, Sense]] = {
     "reactions": ("reactions", "either"),
     "axle_loads": ("axle_loads", "positive"),
 }
-
-#: What static axle loads depend on: masses, and springs that share them out.
-SHARED_OUT = ("body_mass", "tyre_stiffness", "suspension_stiffness")
 
 #: Most memory that the histories of some samples may take [bytes].
 MOST_BYTES = 4 * 2**30
@@ -69,8 +81,8 @@ class Failure:
     row: int
 
 
-@dataclass(frozen=True, eq=False)
-class BodyAccelerations:
+@dataclass(frozen=True, eq=False, repr=False)
+class BodyAccelerations(Value):
     """Vertical accelerations of the bodies of the first vehicle and those behind it.
 
     Attributes
@@ -83,6 +95,110 @@ class BodyAccelerations:
 
     max: Array
     rms: Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OffRoads(Value):
+    """How often and how long wheels were off the road, sample by sample.
+
+    Attributes
+    ----------
+    count : ndarray of int, shape (sample, axle)
+        How many times.
+    total : ndarray, shape (sample, axle)
+        How long in all [s].
+    """
+
+    count: NDArray[np.int64]
+    total: Array
+
+
+class SampleFactors:
+    """Impact factors of every sample, as `ImpactFactors` has them of one crossing.
+
+    Arrays have one row for each sample; NaN where masked, and of samples that failed. They are
+    worked out when asked for.
+
+    Attributes
+    ----------
+    deflection, sagging, hogging, shear : ndarray, shape (sample, section)
+        By section.
+    reactions : ndarray, shape (sample, support)
+        By support.
+    axle_loads : ndarray, shape (sample, axle)
+        By axle.
+    sections, supports : ndarray
+        Positions [m].
+    mask : float
+        Factors are NaN where the static value is at most this fraction of the largest of its kind.
+    ratio : str
+        ``"extremes"``: dynamic by static extreme, which may occur at different times.
+
+    Raises
+    ------
+    ValueError
+        If a response was not looked at.
+    """
+
+    ratio: Final = "extremes"
+
+    def __init__(self, ensemble: Ensemble, mask: float) -> None:
+        self._ensemble, self.mask = ensemble, mask
+
+    def __getitem__(self, quantity: Factor) -> Array:
+        """Those of one kind by its name."""
+        return self._ensemble._factors(quantity, self.mask)
+
+    def __call__(self, quantity: Factor, mask: float | None = None) -> Array:
+        """As it was before: a method of the ensemble."""
+        new = "impact_factors" if mask is None else f"ratios(mask={mask})"
+        renamed(f'Ensemble.impact_factors("{quantity}")', f"Ensemble.{new}.{quantity}")
+        return (self if mask is None else self._ensemble.ratios(mask))[quantity]
+
+    @property
+    def sections(self) -> Array:
+        return self._ensemble.sections
+
+    @property
+    def supports(self) -> Array:
+        return self._ensemble.supports
+
+    @property
+    def deflection(self) -> Array:
+        return self["deflection"]
+
+    @property
+    def sagging(self) -> Array:
+        return self["sagging"]
+
+    @property
+    def hogging(self) -> Array:
+        return self["hogging"]
+
+    @property
+    def shear(self) -> Array:
+        return self["shear"]
+
+    @property
+    def reactions(self) -> Array:
+        return self["reactions"]
+
+    @property
+    def axle_loads(self) -> Array:
+        return self["axle_loads"]
+
+    def __repr__(self) -> str:
+        return f"SampleFactors({self._ensemble.samples} samples, {len(self.sections)} sections)"
+
+
+class Instants:
+    """Finds times and positions of the extremes of a quantity, when they are asked for."""
+
+    def __init__(self, ensemble: Ensemble, largest: int, smallest: int, width: int) -> None:
+        self._ensemble, self._starts, self._width = ensemble, (smallest, largest), width
+
+    def __call__(self, largest: bool) -> Moments:
+        return self._ensemble._moments(self._starts[int(largest)], self._width)
 
 
 class Ensemble:
@@ -127,28 +243,53 @@ class Ensemble:
         takes about ten times as long.
     """
 
-    def __init__(
-        self, bridge: Bridge, recipe: Recipe, quantities: Sequence[Quantity], core: _core.Ensemble
-    ) -> None:
-        self._recipe, self._core = recipe, core
-        self.bridge = bridge
-        self.quantities = tuple(quantities)
+    def __init__(self, recipe: Recipe, rows: Rows) -> None:
+        self._recipe, self._rows = recipe, rows
+        self.bridge, self.quantities = recipe.bridge, recipe.quantities
         self.samples, self.first, self.seed = recipe.samples, recipe.first, recipe.seed
         self.speed = recipe.speeds.given
-        self.sections: Array = frozen(core.sections)
-        self.frequencies: Array = frozen(core.omega / (2.0 * np.pi))
-        self.supports: Array = frozen(np.array([x for x, _ in bridge.supports]))
+        self.sections: Array = rows.sections
+        self.frequencies: Array = frozen(rows.omega / (2.0 * np.pi))
+        self.supports: Array = frozen(np.array([x for x, _ in self.bridge.supports]))
         self.failures = tuple(
-            Failure(self.first + row, step, cause, row) for row, step, cause in core.failures
+            Failure(self.first + row, step, cause, row) for row, step, cause in rows.failures
         )
-        self._numbers: Array = frozen(core.numbers)
-        self._instants: NDArray[np.uint32] = core.instants
-        self._instants.setflags(write=False)
-        self.digests: NDArray[np.uint64] = core.digests
-        self.digests.setflags(write=False)
-        self.hash = f"{core.hash:016x}"
-        self.isa, self.threads, self.elapsed = core.isa, core.threads, core.elapsed
-        self.shares_geometry = core.shares
+        self.digests: NDArray[np.uint64] = rows.digests
+        self.hash = rows.hash
+        self.isa, self.threads, self.elapsed = rows.isa, rows.threads, rows.elapsed
+        self.shares_geometry = rows.shares
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its recipe and its rows."""
+        return Ensemble, (self._recipe, self._rows)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same was asked, to the same results, bit for bit; not how fast, and where."""
+        if type(other) is not Ensemble:
+            return NotImplemented
+        return self._recipe == other._recipe and self._rows == other._rows
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def read(cls, path: str | Path) -> Ensemble:
+        """What `to_npz` wrote, whole: `run` and `==` included.
+
+        Parameters
+        ----------
+        path : str or Path
+            The archive.
+
+        Raises
+        ------
+        OSError
+            If there is no such file, or it cannot be read.
+        ValueError
+            If it is not an archive of an ensemble, or a value in it is not allowed.
+        """
+        from spanwise._ensemblefile import read_npz
+
+        return read_npz(file_path("path", path))
 
     @property
     def rate(self) -> float:
@@ -160,38 +301,21 @@ class Ensemble:
         """Keyword arguments of `ensemble` that compute it again, defaults filled in."""
         return self._recipe.settings
 
-    @cached_property
-    def _starts(self) -> dict[str, tuple[int, int]]:
-        """The first response of every kind among all, and how many there are."""
-        found, start = {}, 0
-        for name in _cores(self.quantities):
-            width = self._core.width(name)
-            found[name] = (start, width)
-            start += width
-        found[""] = (start, 0)
-        return found
-
     def _extremes(self, name: str) -> SampleExtremes:
         """Of one kind of response."""
-        if name not in self._starts:
+        rows = self._rows
+        if name not in rows.widths:
             raise AttributeError(f"{name}: {self._not_looked_at}")
-        start, width = self._starts[name]
-        all_ = self._starts[""][0]
+        (start, width), all_ = rows.place(name), rows.responses
         x = {"reactions": self.supports, "clamp_moments": self.bridge.clamps}
-        low, high = self._core.columns("statics")
-        statics = self._numbers[:, low:high]
-        if high == low:
-            statics = self._core.at_rest
-            # In their own steps, which are halved for some.
-            statics = statics[0] if len(statics) == 1 else statics[self._core.marches]
         largest, smallest = slice(start, start + width), slice(all_ + start, all_ + start + width)
         return SampleExtremes(
             x.get(name, self.sections),
-            self._numbers[:, largest],
-            self._numbers[:, smallest],
-            frozen(statics[..., largest]),
-            frozen(statics[..., smallest]),
-            lambda of_largest: self._moments(start if of_largest else all_ + start, width),
+            rows.numbers[:, largest],
+            rows.numbers[:, smallest],
+            rows.frozen_statics(largest),
+            rows.frozen_statics(smallest),
+            Instants(self, start, all_ + start, width),
         )
 
     @property
@@ -201,109 +325,82 @@ class Ensemble:
 
     def _moments(self, start: int, width: int) -> Moments:
         """Times and positions of some of the extremes, counted through responses and loads."""
-        if self._core.own_times:
-            time, position = (
-                self._numbers[:, at + start : at + start + width]
-                for at, _ in map(self._core.columns, ("times", "positions"))
-            )
-            return time, position
-        time, position = self._core.when(self._instants[:, start : start + width])
-        missing = np.isnan(self._extreme_values[:, start : start + width])
-        time[missing] = position[missing] = np.nan
-        return time, position
-
-    @property
-    def _extreme_values(self) -> Array:
-        """Extremes of responses and loads in the order of their instants."""
-        return self._numbers[:, : self._core.columns("axle_loads")[1]]
+        return self._rows.moments(start, width, self._recipe.front_speeds)
 
     @cached_property
-    def deflection(self) -> SampleExtremes:
-        """Deflections down [m].
+    def _envelopes(self) -> dict[str, SampleExtremes]:
+        """Those that have been asked for."""
+        return {}
 
-        A `SampleExtremes` as `moment` is, of shape (samples, sections).
+    def envelope(self, quantity: str) -> SampleExtremes:
+        """Extremes of a quantity in every sample, as `Run.envelope` has them of one crossing.
+
+        Parameters
+        ----------
+        quantity : str
+            ``"deflection"`` down [m], ``"moment"`` sagging [N m], ``"shear"`` on both sides of the
+            sections together [N], ``"shear_left"``, ``"shear_right"``, ``"reactions"`` up [N],
+            ``"clamp_moments"`` of the supports of `Bridge.clamps` [N m] or ``"axle_loads"`` [N],
+            these over the whole crossing, the approach too, of all vehicles in their order.
+
+        Returns
+        -------
+        SampleExtremes
+            ``.max`` and ``.min`` with their ``_time`` [s] and ``_position`` [m] (``.max_time``,
+            ``.max_position``, ...), all of shape (samples, sections), and ``.static_max``,
+            ``.static_min``, of shape (sections,) where all samples share them. Supports, clamps or
+            axles stand in the place of sections where they have the quantity.
+
+        Raises
+        ------
+        ValueError
+            If there is no such quantity, or it was not looked at.
         """
-        return self._extremes("deflection")
+        name = named("quantity", quantity, get_args(Looked))
+        looked_at = name.removesuffix("_left").removesuffix("_right")
+        if looked_at not in (*self.quantities, "axle_loads"):
+            raise ValueError(f'quantity = "{name}": {self._not_looked_at}')
+        if name not in self._envelopes:
+            self._envelopes[name] = self._found(name)
+        return self._envelopes[name]
 
-    @cached_property
-    def moment(self) -> SampleExtremes:
-        """Bending moments, sagging positive [N m].
+    def _found(self, name: str) -> SampleExtremes:
+        if name == "axle_loads":
+            return self._axle_loads()
+        if name == "shear":
+            return self.envelope("shear_left").merged(self.envelope("shear_right"))
+        return self._extremes(name)
 
-        A `SampleExtremes`: ``.max`` and ``.min`` with their ``_time`` [s] and ``_position`` [m]
-        (``.max_time``, ``.max_position``, ...), all of shape (samples, sections), and
-        ``.static_max``, ``.static_min``, of shape (sections,) where all samples share them.
-        """
-        return self._extremes("moment")
-
-    @cached_property
-    def shear_left(self) -> SampleExtremes:
-        """Shear just left of the sections [N].
-
-        A `SampleExtremes` as `moment` is, of shape (samples, sections).
-        """
-        return self._extremes("shear_left")
-
-    @cached_property
-    def shear_right(self) -> SampleExtremes:
-        """Shear just right of the sections [N].
-
-        A `SampleExtremes` as `moment` is, of shape (samples, sections).
-        """
-        return self._extremes("shear_right")
-
-    @cached_property
-    def shear(self) -> SampleExtremes:
-        """Shear on both sides of the sections together [N].
-
-        A `SampleExtremes` as `moment` is, of shape (samples, sections).
-        """
-        return self.shear_left.merged(self.shear_right)
-
-    @cached_property
-    def reactions(self) -> SampleExtremes:
-        """Support reactions, up [N].
-
-        A `SampleExtremes` as `moment` is, of shape (samples, supports).
-        """
-        return self._extremes("reactions")
-
-    @cached_property
-    def clamp_moments(self) -> SampleExtremes:
-        """Moments of the supports of `Bridge.clamps` [N m].
-
-        A `SampleExtremes` as `moment` is, of shape (samples, clamps).
-        """
-        return self._extremes("clamp_moments")
-
-    @cached_property
-    def axle_loads(self) -> SampleExtremes:
-        """Axle loads [N], over the whole crossing, of all vehicles in their order.
-
-        A `SampleExtremes` as `moment` is, of shape (samples, axles). The approach counts too.
-        """
-        start, end = self._core.columns("axle_loads")
-        axles = (end - start) // 2
+    def _axle_loads(self) -> SampleExtremes:
+        loads, (start, _) = self._rows.block("axle_loads"), self._rows.columns["axle_loads"]
+        axles = loads.shape[1] // 2
         return SampleExtremes(
             np.arange(1.0, axles + 1.0),
-            self._numbers[:, start : start + axles],
-            self._numbers[:, start + axles : end],
+            loads[:, :axles],
+            loads[:, axles:],
             self.static_axle_loads,
             self.static_axle_loads,
-            lambda largest: self._moments(start if largest else start + axles, axles),
+            Instants(self, start, start + axles, axles),
         )
+
+    def __getattr__(self, name: str) -> Any:
+        """Attributes that have other names now; those of `Run` alike are histories."""
+        if name in get_args(Looked):
+            renamed(f"Ensemble.{name}", f'Ensemble.envelope("{name}")')
+            looked_at = name.removesuffix("_left").removesuffix("_right")
+            if looked_at not in (*self.quantities, "axle_loads"):
+                raise AttributeError(f"{name}: {self._not_looked_at}")
+            return self.envelope(name)
+        if name in ("lift_offs", "time_off_road"):
+            new = "count" if name == "lift_offs" else "total"
+            renamed(f"Ensemble.{name}", f"Ensemble.off_road.{new}")
+            return getattr(self.off_road, new)
+        raise AttributeError(f"'Ensemble' object has no attribute {name!r}")
 
     @cached_property
     def static_axle_loads(self) -> Array:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
-        loads = self._core.static_loads()
-        varied = len(self._recipe.events) > 1 or any(
-            each.name in SHARED_OUT for each in self._recipe.factors
-        )
-        return frozen(loads if varied else loads[0])
-
-    def _block(self, name: str) -> Array:
-        start, end = self._core.columns(name)
-        return self._numbers[:, start:end]
+        return frozen(self._recipe.static_loads())
 
     @property
     def load_coefficients(self) -> Array:
@@ -312,54 +409,53 @@ class Ensemble:
         The root mean square of P - P_st by P_st, over the steps from the first with an axle on the
         bridge to that with which the last axle leaves it: `Run.load_coefficients`, bit for bit.
         """
-        return self._block("load_coefficients")
+        return self._rows.block("load_coefficients")
 
     @property
-    def time_off_road(self) -> Array:
-        """How long each wheel was off the road in all [s], shape (sample, axle)."""
-        return self._block("time_off_road")
-
-    @property
-    def lift_offs(self) -> NDArray[np.int64]:
-        """How often each wheel left the road, shape (sample, axle)."""
-        axles = self.load_coefficients.shape[1]
-        return self._instants[:, self._instants.shape[1] - axles :].astype(np.int64)
+    def off_road(self) -> OffRoads:
+        """How often and how long the wheels were off the road, by sample and axle."""
+        instants, total = self._rows.instants, self._rows.block("time_off_road")
+        return OffRoads(instants[:, instants.shape[1] - total.shape[1] :].astype(np.int64), total)
 
     @property
     def body_accelerations(self) -> BodyAccelerations:
         """Vertical accelerations of the bodies, by sample and body [m/s2]."""
-        return BodyAccelerations(self._block("accelerations"), self._block("vibrations"))
+        return BodyAccelerations(self._rows.block("accelerations"), self._rows.block("vibrations"))
 
-    def impact_factors(self, quantity: Factor, mask: float | None = None) -> Array:
+    @cached_property
+    def impact_factors(self) -> SampleFactors:
         """Impact factors of every sample: dynamic extreme by static extreme.
+
+        As `Run.impact_factors`, with one row for each sample: ``impact_factors.sagging`` is of
+        shape (sample, section).
+        """
+        return self.ratios()
+
+    def ratios(self, mask: float | None = None) -> SampleFactors:
+        """Impact factors with another mask.
 
         Parameters
         ----------
-        quantity : {"deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"}
-            Of what, as in `Run.impact_factors`.
         mask : float, optional
             Give none where the static value is at most this fraction of the largest along the
             bridge; by default as the ensemble was told.
 
         Returns
         -------
-        ndarray, shape (sample, section)
-            One column for each section, support or axle; NaN where masked, and of samples that
-            failed.
-
-        Raises
-        ------
-        ValueError
-            If there are no such factors.
+        SampleFactors
+            NaN where masked, and of samples that failed.
         """
-        choice("quantity", quantity, FACTORS)
-        name, sense = FACTORS[quantity]
         least = self._recipe.conditions.mask if mask is None else masked(mask)
-        if name not in (*self.quantities, "axle_loads"):
-            what = "" if name == quantity else f"{name} "
-            raise ValueError(f'quantity = "{quantity}": {what}{self._not_looked_at}')
-        extremes: SampleExtremes = getattr(self, name)
-        return extremes.factors(sense, least)
+        return SampleFactors(self, least)
+
+    def _factors(self, quantity: object, mask: float) -> Array:
+        """Those of one kind, shape (sample, section, support or axle)."""
+        name = named("quantity", quantity, FACTORS)
+        of, sense = FACTORS[name]
+        if of not in (*self.quantities, "axle_loads"):
+            what = "" if of == name else f"{of} "
+            raise ValueError(f'quantity = "{name}": {what}{self._not_looked_at}')
+        return self.envelope(of).factors(sense, mask)
 
     def run(self, sample: int) -> Run:
         """A sample by a crossing of its own, with all histories.
@@ -391,7 +487,7 @@ class Ensemble:
                 raise RuntimeError(
                     f"row {row}: sample number {each.sample} failed{step}: {each.cause}"
                 )
-        return self._recipe.run(row, self._core)
+        return self._recipe.run(row, self._rows)
 
     def _row(self, key: str, given: object) -> int:
         """A row that there is."""
@@ -428,7 +524,7 @@ class Ensemble:
         RuntimeError
             If one of them is one that failed.
         """
-        choice("quantity", quantity, get_args(History))
+        quantity = named("quantity", quantity, get_args(History))
         if is_list(samples):
             rows = [
                 self._row(f"samples[{i}]", each) for i, each in enumerate(items("samples", samples))
@@ -482,7 +578,7 @@ class Ensemble:
         """Write all extremes, fingerprints and the settings to a NumPy archive.
 
         Names are those of the attributes, such as ``moment_max`` and ``axle_loads_min_time``;
-        ``settings`` is JSON text. Read it with ``numpy.load(path)``.
+        ``settings`` is JSON text. Read it with `read`, or with ``numpy.load(path)``.
 
         Raises
         ------
@@ -492,6 +588,62 @@ class Ensemble:
         from spanwise._ensemblefile import write_npz
 
         write_npz(self, file_path("path", path))
+
+    def to_pandas(self, by: By = "sample") -> pd.DataFrame:
+        """A frame with one row for each sample; needs the extra ``spanwise[pandas]``.
+
+        Parameters
+        ----------
+        by : {"sample", "section", "support", "clamp", "axle"}, optional
+            One row for each sample (default), or for each sample and section, support, clamp or
+            axle.
+
+        Returns
+        -------
+        DataFrame
+            Rows are named by the numbers of the samples. By sample: ``kind`` where there are
+            several, ``speed`` [m/s] and factors (one column each, or one for each part, from 1),
+            ``failed``, the largest and the smallest value of each quantity along the bridge,
+            ``impact_factor_...`` at the section where the static value is largest (where that is
+            stands in ``attrs["governing"]`` [m]), and by axle and body the load coefficients, lift
+            offs, times off the road and accelerations. Else the extremes of the quantities that
+            have such places, with their times and positions, the static ones, and the impact
+            factors there. Of samples that failed, numbers are NaN.
+
+        Raises
+        ------
+        ValueError
+            If there are no such places, or what is there was not looked at.
+        ImportError
+            If pandas is missing, naming the extra that brings it.
+        """
+        from spanwise._frames import frame
+
+        return frame(self, by)
+
+    def to_parquet(self, path: str | Path, by: By = "sample") -> None:
+        """Write `to_pandas` to a Parquet file; needs the extra ``spanwise[parquet]``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
+        from spanwise._frames import write_parquet
+
+        write_parquet(self, file_path("path", path), by)
+
+    def to_csv(self, path: str | Path, by: By = "sample") -> None:
+        """Write `to_pandas` to a CSV file, with all digits; needs the extra ``spanwise[pandas]``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
+        from spanwise._frames import write_csv
+
+        write_csv(self, file_path("path", path), by)
 
     @property
     def plot(self) -> EnsemblePlot:
@@ -503,12 +655,3 @@ class Ensemble:
 
 def _many(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
-
-
-def _cores(quantities: Sequence[str]) -> list[str]:
-    """The kinds of response that the core knows for these quantities."""
-    return [
-        name
-        for each in quantities
-        for name in (("shear_left", "shear_right") if each == "shear" else (each,))
-    ]

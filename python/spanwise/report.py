@@ -6,18 +6,19 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from spanwise._checks import file_path
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._extras import require
 from spanwise._files import write_files
+from spanwise._keys import alike
 from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import envelope, history, places, plain, quantities, stop
 from spanwise._vehicletable import table_of
 from spanwise.damping import in_words
-from spanwise.run import Quantity, Run
+from spanwise.run import QUANTITIES, Quantity, Run
 from spanwise.table import COLUMNS
 
 if TYPE_CHECKING:
@@ -98,6 +99,7 @@ def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
     """History of a quantity as a frame, see `Run.to_pandas`."""
     pandas = require("pandas", extra="pandas")
     values = history(run, quantity)
+    quantity = cast("Quantity", alike(quantity, QUANTITIES))
     if quantity == "shear":
         sides = ["left", "right"]
         columns = pandas.MultiIndex.from_product([run.sections, sides], names=["x [m]", "side"])

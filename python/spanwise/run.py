@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
@@ -13,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import choice
+from spanwise._checks import choice, named
+from spanwise._computed import Computed, frozen
 from spanwise._conditions import masked
+from spanwise._value import Value, same
 from spanwise.bridge import Bridge
 from spanwise.roads import Road
 from spanwise.table import ImpactFactors
@@ -42,8 +43,8 @@ QUANTITIES: tuple[Quantity, ...] = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Extremes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Extremes(Value):
     """Extremes of a response, one for each section (or support, clamp, axle).
 
     Attributes
@@ -67,9 +68,12 @@ class Extremes:
     def _of(cls, columns: Array) -> Extremes:
         return cls(*(np.ascontiguousarray(column) for column in columns.T))
 
+    def __repr__(self) -> str:
+        return f"Extremes({_span(self.value)})"
 
-@dataclass(frozen=True, eq=False)
-class Envelope:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Envelope(Value):
     """Largest and smallest values of a quantity over the crossing, dynamic and static.
 
     Attributes
@@ -88,11 +92,15 @@ class Envelope:
     static_max: Extremes
     static_min: Extremes
 
+    def __repr__(self) -> str:
+        return f"Envelope(max {_span(self.max.value)}; min {_span(self.min.value)})"
 
-def _frozen(values: Array) -> Array:
-    """The array, kept from being changed by mistake: others read it too."""
-    values.setflags(write=False)
-    return values
+
+def _span(values: Array) -> str:
+    """How many, and the least and the largest, for a short text."""
+    there = values[~np.isnan(values)]
+    extent = f", {there.min():.4g} to {there.max():.4g}" if len(there) else ""
+    return f"{len(values)} values{extent}"
 
 
 class Responses:
@@ -105,8 +113,23 @@ class Responses:
     states of the crossing when first asked for, kept, and not to be written to: copy them first.
     """
 
-    def __init__(self, histories: Callable[[str], Array]) -> None:
-        self._histories = histories
+    def __init__(self, computed: Computed, *, static: bool = False) -> None:
+        self._computed, self._static = computed, static
+
+    def _histories(self, name: str) -> Array:
+        return self._computed.histories(name)[int(self._static)]
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        assert isinstance(other, Responses)
+        return (self._computed, self._static) == (other._computed, other._static)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        core = self._computed.core
+        return f"Responses({len(core.sections)} sections, {core.steps + 1} instants)"
 
     @property
     def deflection(self) -> Array:
@@ -144,8 +167,8 @@ class Responses:
         return self._histories("clamp_moments")
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Value):
     """A coordinate during the crossing.
 
     Attributes
@@ -158,9 +181,12 @@ class Motion:
     velocity: Array
     acceleration: Array
 
+    def __repr__(self) -> str:
+        return f"Motion({len(self.displacement)} instants)"
 
-@dataclass(frozen=True, eq=False)
-class BodyMotion:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BodyMotion(Value):
     """A body of a vehicle during the crossing.
 
     Attributes
@@ -174,9 +200,12 @@ class BodyMotion:
     heave: Motion
     pitch: Motion
 
+    def __repr__(self) -> str:
+        return f"BodyMotion({len(self.heave.displacement)} instants)"
 
-@dataclass(frozen=True, eq=False)
-class VehicleMotion:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class VehicleMotion(Value):
     """A vehicle during the crossing; every array has one entry for each instant.
 
     Heave and pitch are those of its first body; a train has no body, and these are then missing.
@@ -214,6 +243,10 @@ class VehicleMotion:
     suspension_shortenings: Array
     friction: Array
     stopped: float | None
+
+    def __repr__(self) -> str:
+        bodies, (instants, axles) = len(self.bodies), self.axle_positions.shape
+        return f"VehicleMotion({bodies} bodies, {axles} axles, {instants} instants)"
 
     def _body(self) -> BodyMotion:
         if not self.bodies:
@@ -273,8 +306,8 @@ class LiftOff:
         return self.end - self.start
 
 
-@dataclass(frozen=True, eq=False)
-class OffRoad:
+@dataclass(frozen=True, eq=False, repr=False)
+class OffRoad(Value):
     """How often and how long wheels were off the road, axle by axle.
 
     Attributes
@@ -292,8 +325,8 @@ class OffRoad:
     longest: Array
 
 
-@dataclass(frozen=True, eq=False)
-class ModalMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class ModalMotion(Value):
     """Modal coordinates during the crossing, for modes of unit modal mass.
 
     Attributes
@@ -305,6 +338,10 @@ class ModalMotion:
     coordinates: Array
     velocities: Array
     accelerations: Array
+
+    def __repr__(self) -> str:
+        instants, modes = self.coordinates.shape
+        return f"ModalMotion({modes} modes, {instants} instants)"
 
 
 class Run(Responses):
@@ -352,12 +389,11 @@ class Run(Responses):
         passages: tuple[Passage, ...],
         road: Road,
         settings: dict[str, object],
-        core: _core.Crossing,
+        computed: Computed,
     ) -> None:
-        both = cache(lambda name: [_frozen(values) for values in core.histories(name)])
-        super().__init__(lambda name: both(name)[0])
-        self.static = Responses(lambda name: both(name)[1])
-        self._core = core
+        super().__init__(computed)
+        self.static = Responses(computed, static=True)
+        core = computed.core
         self.bridge, self.passages, self.road, self.settings = bridge, passages, road, settings
         self.truck: AnyVehicle = passages[0].vehicle
         self.sections: Array = core.sections
@@ -367,6 +403,26 @@ class Run(Responses):
         self.stopped: tuple[float | None, ...] = tuple(core.stopped)
         self.lift_offs = tuple(LiftOff(axle + 1, *span) for axle, *span in core.lift_offs)
         self.steps: int = core.steps
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what is worked out when asked for: the states of the crossing are enough."""
+        worked_out = {
+            name for name, each in vars(type(self)).items() if isinstance(each, cached_property)
+        }
+        return {name: each for name, each in vars(self).items() if name not in worked_out}
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same was asked, to the same states, bit for bit."""
+        if type(other) is not Run:
+            return NotImplemented
+        names = ("passages", "road", "settings", "_computed")
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None
+
+    @property
+    def _core(self) -> _core.Crossing:
+        return self._computed.core
 
     @property
     def axles(self) -> list[tuple[int, int]]:
@@ -393,12 +449,12 @@ class Run(Responses):
     @cached_property
     def time(self) -> Array:
         """Time since the front axle was at the start of the approach [s], shape (time,)."""
-        return _frozen(self._core.states("time").ravel())
+        return frozen(self._core.states("time").ravel())
 
     @cached_property
     def axle_loads(self) -> Array:
         """Axle loads [N], shape (time, axle)."""
-        return _frozen(self._core.states("axle_loads"))
+        return frozen(self._core.states("axle_loads"))
 
     @cached_property
     def load_coefficients(self) -> Array:
@@ -408,7 +464,7 @@ class Run(Responses):
         bridge to that with which the last axle leaves it. It is taken about the static load, not
         about the mean: on a short bridge an axle may be above it nearly all the time.
         """
-        return _frozen(self._core.load_coefficients)
+        return frozen(self._core.load_coefficients)
 
     @cached_property
     def vehicles(self) -> tuple[VehicleMotion, ...]:
@@ -424,7 +480,7 @@ class Run(Responses):
         for number_, (passage, stopped) in enumerate(
             zip(self.passages, self._core.stopped, strict=True)
         ):
-            columns = _frozen(self._core.motion(number_)).T
+            columns = frozen(self._core.motion(number_)).T
             triples = [Motion(*columns[at : at + 3]) for at in range(0, len(columns) - 3, 3)]
             axles = len(passage.vehicle.axle_positions)
             bodies, hops = triples[: len(triples) - axles], triples[len(triples) - axles :]
@@ -436,7 +492,7 @@ class Run(Responses):
                     hops=tuple(hops),
                     **dict(zip(("travel", "speed", "acceleration"), columns[-3:], strict=True)),
                     **{
-                        kind: _frozen(np.ascontiguousarray(values[:, own]))
+                        kind: frozen(np.ascontiguousarray(values[:, own]))
                         for kind, values in by_axle.items()
                     },
                     stopped=stopped,
@@ -453,7 +509,7 @@ class Run(Responses):
     def modal(self) -> ModalMotion:
         """The motion of the bridge in modal coordinates."""
         rates = ("coordinates", "velocities", "accelerations")
-        return ModalMotion(*(_frozen(self._core.states(name)) for name in rates))
+        return ModalMotion(*(frozen(self._core.states(name)) for name in rates))
 
     def __repr__(self) -> str:
         return (
@@ -487,7 +543,7 @@ class Run(Responses):
         quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
             The quantity.
         """
-        choice("quantity", quantity, QUANTITIES)
+        quantity = named("quantity", quantity, QUANTITIES)
         columns = (Extremes._of(each) for each in self._core.envelope(quantity))
         where = {
             "reactions": self.supports,

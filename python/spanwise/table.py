@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._extras import require
+from spanwise._value import Value
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,8 +21,8 @@ Array: TypeAlias = NDArray[np.float64]
 COLUMNS = ("deflection", "sagging", "hogging", "shear")
 
 
-@dataclass(frozen=True, eq=False)
-class ImpactFactors:
+@dataclass(frozen=True, eq=False, repr=False)
+class ImpactFactors(Value):
     """Impact factors along the bridge, NaN where the static value is too small to divide by.
 
     Attributes
@@ -73,7 +74,14 @@ class ImpactFactors:
         lines += ["", self._note()]
         return "\n".join(lines)
 
-    __repr__ = __str__
+    def __repr__(self) -> str:
+        def span(name: str) -> str:
+            found = getattr(self, name)
+            there = found[~np.isnan(found)]
+            return f"{name} {there.min():.3f} to {there.max():.3f}" if len(there) else f"{name} -"
+
+        names = (*COLUMNS, "reactions", "axle_loads")
+        return f"ImpactFactors({len(self.sections)} sections; {', '.join(map(span, names))})"
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{name}</th>" for name in ("x [m]", *COLUMNS))

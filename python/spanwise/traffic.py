@@ -18,6 +18,7 @@ from spanwise._checks import (
     word,
 )
 from spanwise._keys import Keys
+from spanwise._value import Brief
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
 from spanwise.vehicles import AnyVehicle
@@ -60,8 +61,8 @@ class Acceleration:
         return self.kind, [self.acceleration], []
 
 
-@dataclass(frozen=True, kw_only=True)
-class Speeds:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Speeds(Brief):
     """Driving at speeds given in time, linear between them and constant outside.
 
     Parameters

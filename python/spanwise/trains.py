@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     pass
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ForceTrain(Wheels):
     """Constant forces in a row: the axle loads of a code, or of a truck that has been weighed.
 
@@ -45,8 +45,11 @@ class ForceTrain(Wheels):
         object.__setattr__(self, "positions", tuple(positions))
         object.__setattr__(self, "_core", _core.Vehicle.force_train(loads, positions))
 
+    def __repr__(self) -> str:
+        return f"ForceTrain({sum(self.loads) / 1e3:.4g} kN, {self._row()})"
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(frozen=True, kw_only=True, repr=False)
 class MovingMasses(Wheels):
     """Masses in a row that follow the road and the bridge rigidly.
 
@@ -81,6 +84,9 @@ class MovingMasses(Wheels):
         object.__setattr__(self, "masses", tuple(masses))
         object.__setattr__(self, "positions", tuple(positions))
         object.__setattr__(self, "_core", _core.Vehicle.moving_masses(masses, positions))
+
+    def __repr__(self) -> str:
+        return f"MovingMasses({self.total_mass / 1e3:.4g} t, {self._row()})"
 
 
 def _positions(

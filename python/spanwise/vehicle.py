@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from spanwise import _core
 from spanwise._checks import count, number, shown
+from spanwise._value import Brief
 from spanwise._wheels import Array, Wheels
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Axle:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Axle(Brief):
     """A tyre below a suspension, with an unsprung mass between them or none.
 
     Parameters
@@ -66,8 +67,8 @@ class Axle:
     leaf_decay: float | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hinge:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Hinge(Brief):
     """A fifth wheel, a drawbar, or the pivot of a bogie: it joins a body to an earlier one.
 
     A bogie that is a body of its own, hinged between its axles, equalises their static loads.
@@ -90,8 +91,8 @@ class Hinge:
     height: float = 0.0
 
 
-@dataclass(frozen=True, kw_only=True)
-class Spring:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Spring(Brief):
     """An upright spring and damper between a body and an earlier one: a secondary suspension.
 
     Parameters
@@ -123,8 +124,8 @@ class Spring:
     leaf_decay: float | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
-class Body:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Body(Brief):
     """A rigid body of a vehicle that has several.
 
     Parameters
@@ -276,8 +277,7 @@ class Vehicle(Wheels):
         bodies = ""
         if self.bodies:
             bodies = f"{len(self.bodies)} bod{'ies' if len(self.bodies) > 1 else 'y'}, "
-        axles = f"{len(self.axles)} axle{'s' if len(self.axles) > 1 else ''}"
-        return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{axles}, {self.wheelbase:.4g} m)"
+        return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{self._row()})"
 
     @property
     def parts(self) -> tuple[Body, ...]:

@@ -36,6 +36,12 @@ __all__ = [
     "t44",
 ]
 
+
+def __dir__() -> list[str]:
+    """What is meant for users."""
+    return __all__
+
+
 #: What can cross a bridge.
 AnyVehicle: TypeAlias = Vehicle | ForceTrain | MovingMasses
 

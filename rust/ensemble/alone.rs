@@ -15,6 +15,7 @@ use crate::modal::ModalDamping;
 use crate::road::Road;
 use crate::settings::Settings;
 use crate::survey::survey;
+use crate::vehicle::Vehicle;
 
 /// The bridge of a sample, and what its rows are to multiply A and Ȧ by.
 pub struct Scaled {
@@ -49,21 +50,29 @@ impl Scaled {
     }
 }
 
+/// The vehicles of an event as a sample has them.
+pub fn vehicles(event: &[Passage], samples: &Samples, sample: usize) -> Result<Vec<Vehicle>, Error> {
+    let mut before = [0, 0];
+    let varied = event.iter().map(|Passage { vehicle, .. }| {
+        let own = before;
+        before = [before[0] + vehicle.bodies().len(), before[1] + vehicle.assembly().contacts.len()];
+        if samples.factors.is_empty() { Ok(vehicle.clone()) } else { samples.vehicle(vehicle, sample, own) }
+    });
+    varied.collect()
+}
+
 /// The vehicles of a sample on their ways.
 pub fn passages(study: &Study, samples: &Samples, sample: usize) -> Result<Vec<Passage>, Error> {
-    let mut before = [0, 0];
-    let mut passages = study.kinds[samples.kind(sample)].passages.clone();
-    for (v, passage) in passages.iter_mut().enumerate() {
-        let counts = [passage.vehicle.bodies().len(), passage.vehicle.assembly().contacts.len()];
-        if !samples.factors.is_empty() {
-            passage.vehicle = samples.vehicle(&passage.vehicle, sample, before)?;
-        }
-        before = [before[0] + counts[0], before[1] + counts[1]];
-        if !study.brings_speeds(passage) {
-            passage.speed = passage.speed.or(Some(samples.speed(sample, v)));
-        }
-    }
-    Ok(passages)
+    let event = &study.kinds[samples.kind(sample)].passages;
+    let vehicles = vehicles(event, samples, sample)?;
+    let on_way = event.iter().zip(vehicles).enumerate().map(|(v, (passage, vehicle))| {
+        let speed = match study.brings_speeds(passage) {
+            true => passage.speed,
+            false => passage.speed.or(Some(samples.speed(sample, v))),
+        };
+        Passage { vehicle, speed, ..passage.clone() }
+    });
+    Ok(on_way.collect())
 }
 
 /// Fills in the record of one sample; its axles' times and positions with it.

@@ -169,7 +169,7 @@ pub struct Results {
     pub numbers: Vec<f64>,
     /// Instants, sample after sample.
     pub instants: Vec<u32>,
-    /// By sample, the march it took: which of the study's tables and refinements.
+    /// By sample, the march it took: which of the paces of its clock.
     pub marches: Vec<u32>,
     /// Fingerprint of every sample.
     pub digests: Vec<u64>,
@@ -180,10 +180,15 @@ pub struct Results {
 impl Results {
     /// Fingerprint of all samples together.
     pub fn hash(&self) -> u64 {
-        let mut hasher = xxhash_rust::xxh3::Xxh3::new();
-        for digest in &self.digests {
-            hasher.update(&digest.to_le_bytes());
-        }
-        hasher.digest()
+        fingerprint(self.digests.iter().copied())
     }
+}
+
+/// Fingerprint of samples together, from that of each.
+pub fn fingerprint(digests: impl Iterator<Item = u64>) -> u64 {
+    let mut hasher = xxhash_rust::xxh3::Xxh3::new();
+    for digest in digests {
+        hasher.update(&digest.to_le_bytes());
+    }
+    hasher.digest()
 }

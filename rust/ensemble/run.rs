@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use rayon::prelude::*;
 
-use super::record::{self, Failure, Layout, Record, Results};
+use super::clock::{Clock, Pace};
+use super::record::{Failure, Layout, Record, Results};
 use super::sample::Samples;
 use super::simd::{self, Isa, SAMPLES};
 use super::table::{Below, Table};
@@ -145,10 +146,11 @@ impl Study {
         if marches.len() > 1 {
             put_back(&order, &mut results);
         }
-        let refinements = marches.iter().map(|(_, halvings)| *halvings).collect();
+        let paces = marches.iter().zip(&tables).map(|(&(_, halvings), table)| Pace::new(table, halvings)).collect();
+        let clock = Clock::new(self.settings.tail, paces);
         let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
         let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
-        Ok(Run { results, tables, refinements, at_rest })
+        Ok(Run { results, clock, at_rest })
     }
 
     /// Refuses geometry that there is no memory for beside results of so many bytes.
@@ -195,41 +197,16 @@ fn memory() -> f64 {
     told.map_or(isize::MAX as f64, |kilobytes| 1024.0 * kilobytes)
 }
 
-/// What a run leaves, with the tables that its instants refer to.
+/// What a run leaves.
 #[derive(Debug)]
 pub struct Run {
     /// The results.
     pub results: Results,
-    /// By march.
-    pub tables: Vec<Arc<Table>>,
-    /// How often the step was halved, by march.
-    pub refinements: Vec<u32>,
-    /// Static extremes in these steps, largest of all responses looked at, then smallest, by march; none if samples have
+    /// What their instants mean.
+    pub clock: Clock,
+    /// Static extremes in the steps of each march, largest of all responses looked at, then smallest; none if samples have
     /// their own.
     pub at_rest: Vec<Vec<f64>>,
-}
-
-impl Run {
-    /// Time [s] and position of the front axle [m] at an instant of a sample that shares the geometry.
-    pub fn when(&self, study: &Study, samples: &Samples, sample: usize, instant: u32) -> (f64, f64) {
-        let table = &self.tables[self.results.marches[sample] as usize];
-        let h = table.path.advance / samples.speed(sample, 0);
-        match record::stop_or_step(instant) {
-            Ok(stop) => {
-                let stop = &table.stops[stop];
-                (stop.when(h), stop.position)
-            }
-            Err(step) => {
-                let (time, position) = (step as f64 * h, table.path.x(step, 0));
-                let (last, fraction) = together::end(table.path.steps, h, study.settings.tail);
-                if step < last || fraction == 1.0 {
-                    return (time, position);
-                }
-                let (before, behind) = ((step - 1) as f64 * h, table.path.x(step - 1, 0));
-                (before + fraction * (time - before), behind + fraction * (position - behind))
-            }
-        }
-    }
 }
 
 /// What a worker takes at a time.

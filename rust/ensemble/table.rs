@@ -82,8 +82,13 @@ pub struct Stop {
 impl Stop {
     /// When, in steps of h [s].
     pub fn when(&self, h: f64) -> f64 {
-        let (before, after) = ((self.step - 1) as f64 * h, self.step as f64 * h);
-        before + self.fraction * (after - before)
+        Stop::between(self.step, self.fraction, h)
+    }
+
+    /// When that is so far through a step, in steps of h [s].
+    pub fn between(step: usize, fraction: f64, h: f64) -> f64 {
+        let (before, after) = ((step - 1) as f64 * h, step as f64 * h);
+        before + fraction * (after - before)
     }
 }
 

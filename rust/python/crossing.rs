@@ -6,11 +6,12 @@ use faer::Mat;
 use nalgebra::DVector;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use super::bridge::{Asked, PyBridge};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
-use super::{Matrix, Vector, interruptible, rows};
+use super::{Matrix, Vector, interruptible, packed, rows};
 use crate::analysis::{self, Analysis};
 use crate::course::{Braking, Direction, Drive, Passage};
 use crate::damping::Damping;
@@ -65,6 +66,40 @@ impl Crossing {
 
 #[pymethods]
 impl Crossing {
+    /// One that has travelled: its bridge, what was asked of it, its vehicles, and its `state`.
+    #[staticmethod]
+    #[pyo3(signature = (bridge, vehicles, state, *, modes, damping, damping_matrix, sections, recovery))]
+    #[allow(clippy::too_many_arguments)] // one per argument that Python names
+    fn received(
+        py: Python<'_>,
+        bridge: &PyBridge,
+        vehicles: Vec<PyRef<'_, PyVehicle>>,
+        state: &[u8],
+        modes: usize,
+        damping: Vec<f64>,
+        damping_matrix: Option<PyReadonlyArray2<'_, f64>>,
+        sections: Option<Vec<f64>>,
+        recovery: &str,
+    ) -> PyResult<Self> {
+        let asked =
+            Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
+        let vehicles = vehicles.iter().map(|vehicle| vehicle.0.clone()).collect();
+        let read = postcard::from_bytes::<analysis::Outcome>(state);
+        let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
+        let (analysis, outcome) = interruptible(py, |go_on| {
+            let analysis = bridge.0.analysis(asked, go_on)?;
+            let outcome = analysis.received(outcome);
+            Ok((analysis, outcome))
+        })?;
+        Ok(Crossing { analysis, outcome, vehicles })
+    }
+
+    /// All that was computed, as bytes.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        packed(py, &self.outcome)
+    }
+
     /// The dynamic and the static responses of a quantity at every instant.
     fn histories<'py>(&self, py: Python<'py>, name: &str) -> PyResult<[Matrix<'py>; 2]> {
         let quantity = quantity(name)?;

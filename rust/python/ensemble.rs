@@ -1,5 +1,6 @@
 //! Many crossings for Python; the big arrays go to NumPy as they are.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -7,21 +8,25 @@ use std::time::Instant;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use super::bridge::{Asked, PyBridge};
-use super::crossing::{PyDrive, PyPassage, damped, drive as driven, passage, quantity, recovery_named};
+use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, passage, quantity, recovery_named};
 use super::road::PyRoad;
 use super::vehicle::{PyBody, PyVehicle, parts_of};
-use super::{Matrix, Vector, attended, rows};
+use super::{Matrix, Vector, attended, interruptible, packed, rows};
 use crate::course::Passage;
-use crate::ensemble::record::{Column, Layout};
+use crate::ensemble::clock;
+use crate::ensemble::record::{Column, Layout, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
 use crate::ensemble::{Progress, Run, Study, Workers, alone};
 use crate::error::Error;
+use crate::influence::Quantity;
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
 use crate::settings::Settings;
+use crate::vehicle::Vehicle;
 
 /// Random roads of the samples' own: roughness, waviness, band, contact patch, period, seed.
 type PyOwn = (f64, f64, [f64; 2], f64, f64, u64);
@@ -33,7 +38,7 @@ type PyFactors<'py> = (String, usize, PyReadonlyArray1<'py, f64>);
 #[pyclass(frozen, module = "spanwise._core")]
 pub struct Ensemble {
     study: Study,
-    samples: Samples,
+    quantities: Vec<Quantity>,
     workers: Workers,
     /// Without the numbers, instants and digests, which are Python's.
     run: Run,
@@ -92,12 +97,6 @@ impl Ensemble {
         self.study.shares
     }
 
-    /// Whether times and positions of extremes are among the numbers.
-    #[getter]
-    fn own_times(&self) -> bool {
-        self.layout.own_times
-    }
-
     #[getter]
     fn sections<'py>(&self, py: Python<'py>) -> Vector<'py> {
         self.study.analysis.sections.clone().into_pyarray(py)
@@ -108,27 +107,35 @@ impl Ensemble {
         self.study.analysis.modes.omega.clone().into_pyarray(py)
     }
 
-    /// How many responses a quantity has.
-    fn width(&self, name: &str) -> PyResult<usize> {
-        Ok(self.study.analysis.responses.range(quantity(name)?).len())
+    /// How many responses each kind has that is looked at, in their order.
+    #[getter]
+    fn widths(&self) -> Vec<(String, usize)> {
+        let width = |&(name, quantity): &(&str, Quantity)| {
+            let range = self.study.analysis.responses.range(quantity);
+            (name.to_string(), range.len())
+        };
+        QUANTITIES.iter().filter(|(_, quantity)| self.quantities.contains(quantity)).map(width).collect()
     }
 
-    /// Where a kind of number is in the rows.
-    fn columns(&self, name: &str) -> PyResult<(usize, usize)> {
-        let column = match name {
-            "responses" => Column::Responses,
-            "axle_loads" => Column::Loads,
-            "load_coefficients" => Column::LoadCoefficients,
-            "time_off_road" => Column::Aloft,
-            "accelerations" => Column::Accelerations,
-            "vibrations" => Column::Vibrations,
-            "statics" => Column::Statics,
-            "times" => Column::Times,
-            "positions" => Column::Positions,
-            _ => return Err(Error::input("columns", format!("\"{name}\""), "no such columns").into()),
+    /// Where each kind of number is in the rows.
+    #[getter]
+    fn columns(&self) -> BTreeMap<&'static str, (usize, usize)> {
+        let all = [
+            ("responses", Column::Responses),
+            ("axle_loads", Column::Loads),
+            ("load_coefficients", Column::LoadCoefficients),
+            ("time_off_road", Column::Aloft),
+            ("accelerations", Column::Accelerations),
+            ("vibrations", Column::Vibrations),
+            ("statics", Column::Statics),
+            ("times", Column::Times),
+            ("positions", Column::Positions),
+        ];
+        let place = |(name, column): (&'static str, Column)| {
+            let range = self.layout.range(column);
+            (name, (range.start, range.end))
         };
-        let range = self.layout.range(column);
-        Ok((range.start, range.end))
+        all.into_iter().map(place).collect()
     }
 
     /// Static extremes, largest and then smallest of all responses, in a row for each kind of march; none if samples have
@@ -152,64 +159,159 @@ impl Ensemble {
         all.map(|failure| (failure.sample, failure.step, failure.cause.to_string())).collect()
     }
 
-    /// Times and positions of the front axle at instants of the samples, one row for each.
-    fn when<'py>(&self, py: Python<'py>, instants: PyReadonlyArray2<'py, u32>) -> PyResult<[Matrix<'py>; 2]> {
-        let instants = instants.as_array();
-        if instants.nrows() != self.samples.count || !self.study.shares {
-            return Err(Error::input("instants", instants.nrows(), "must be those of all samples").into());
+    /// What the instants mean.
+    #[getter]
+    fn clock(&self) -> Clock {
+        Clock(self.run.clock.clone())
+    }
+}
+
+/// When the instants of samples are: it travels as bytes.
+#[pyclass(frozen, module = "spanwise._core")]
+pub struct Clock(clock::Clock);
+
+#[pymethods]
+impl Clock {
+    #[new]
+    fn new(state: &[u8]) -> PyResult<Self> {
+        let refused = |cause: String| Error::input("clock", format!("{} bytes", state.len()), cause);
+        let read: clock::Clock = postcard::from_bytes(state).map_err(|e| refused(e.to_string()))?;
+        if read.is_sound() { Ok(Clock(read)) } else { Err(refused("has steps that cannot be".into()).into()) }
+    }
+
+    /// What makes the same again.
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        packed(py, &self.0)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((slf.get_type().into_any(), (slf.get().state(slf.py())?,)))
+    }
+
+    /// Times and positions of the front axle at instants of the samples, one row for each, of its march and its speed.
+    fn when<'py>(
+        &self,
+        py: Python<'py>,
+        instants: PyReadonlyArray2<'py, u32>,
+        marches: PyReadonlyArray1<'py, u32>,
+        speeds: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<[Matrix<'py>; 2]> {
+        let (instants, marches, speeds) = (instants.as_array(), marches.as_array(), speeds.as_array());
+        let count = instants.nrows();
+        if marches.len() != count || ![1, count].contains(&speeds.len()) {
+            return Err(Error::input("instants", count, "must be those of all samples").into());
         }
-        let [times, positions] = py.detach(|| {
+        let [times, positions] = interruptible(py, |go_on| {
             let mut times = Array2::zeros(instants.dim());
             let mut positions = Array2::zeros(instants.dim());
-            for ((at, &instant), (time, position)) in
-                instants.indexed_iter().zip(times.iter_mut().zip(positions.iter_mut()))
-            {
-                (*time, *position) = self.run.when(&self.study, &self.samples, at.0, instant);
+            for (row, instants) in instants.rows().into_iter().enumerate() {
+                if !go_on() {
+                    return Err(Error::Interrupted);
+                }
+                let speed = speeds[if speeds.len() == 1 { 0 } else { row }];
+                for (column, &instant) in instants.iter().enumerate() {
+                    (times[[row, column]], positions[[row, column]]) = self.0.when(marches[row], speed, instant);
+                }
             }
-            [times, positions]
-        });
+            Ok([times, positions])
+        })?;
         Ok([times.into_pyarray(py), positions.into_pyarray(py)])
     }
 
-    /// The time step of a sample of shared geometry [s], and how often it was halved.
-    fn step(&self, sample: usize) -> Option<(f64, u32)> {
-        let march = *self.run.results.marches.get(sample)? as usize;
-        let table = self.run.tables.get(march)?;
-        Some((table.path.advance / self.samples.speed(sample, 0), self.run.refinements[march]))
+    /// The time step of a march at a speed [s], and how often it was halved; none where samples have their own.
+    fn step(&self, march: u32, speed: f64) -> Option<(f64, u32)> {
+        self.0.step(march, speed)
     }
 
-    /// A vehicle as a sample has it, and its bodies.
-    fn vehicle(&self, sample: usize, number: usize) -> PyResult<(PyVehicle, Vec<PyBody>)> {
-        let mut all = alone::passages(&self.study, &self.samples, sample)?;
-        let vehicle = all.swap_remove(number).vehicle;
+    /// Several as one, and which march of it each of theirs is.
+    #[staticmethod]
+    fn joined(clocks: Vec<PyRef<'_, Clock>>) -> (Clock, Vec<Vec<u32>>) {
+        let clocks: Vec<clock::Clock> = clocks.iter().map(|clock| clock.0.clone()).collect();
+        let (joined, marches) = clock::Clock::joined(&clocks);
+        (Clock(joined), marches)
+    }
+}
+
+/// The vehicles of an event with the factors of one sample, and their bodies.
+#[pyfunction]
+pub fn varied<'py>(
+    event: Vec<PyPassage<'py>>,
+    factors: Vec<PyFactors<'py>>,
+) -> PyResult<Vec<(PyVehicle, Vec<PyBody>)>> {
+    let samples = Samples { factors: parameters(factors)?, ..Samples::at_speed(0, 1, 1.0) };
+    let event = event.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
+    let given: Vec<&Vehicle> = event.iter().map(|passage| &passage.vehicle).collect();
+    samples.check(&[given])?;
+    let with_bodies = |vehicle: Vehicle| {
         let bodies = vehicle.bodies().iter().map(parts_of).collect();
-        Ok((PyVehicle(vehicle), bodies))
-    }
+        (PyVehicle(vehicle), bodies)
+    };
+    Ok(alone::vehicles(&event, &samples, 0)?.into_iter().map(with_bodies).collect())
+}
 
-    /// Static axle loads [N]: one row if all samples have the same, else one for each.
-    fn static_loads<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let varies = self.samples.varies_loads();
-        let gravity = self.study.settings.gravity;
-        let loads = |passages: &[Passage]| -> Vec<f64> {
-            let mut all: Vec<f64> = passages.iter().flat_map(|p| p.vehicle.static_loads(gravity)).collect();
-            all.resize(self.layout.axles, f64::NAN);
-            all
-        };
-        let kinds: Vec<Vec<f64>> = self.study.kinds.iter().map(|kind| loads(&kind.passages)).collect();
-        if !varies && kinds.len() == 1 {
-            return rows(py, kinds.concat(), self.layout.axles);
-        }
-        let all: Vec<f64> = py.detach(|| {
-            let of = |sample: usize| match varies {
+/// Static axle loads of all samples [N], a row for each; NaN where the vehicle of a sample cannot be.
+#[pyfunction]
+pub fn static_loads<'py>(
+    py: Python<'py>,
+    kinds: Vec<Vec<PyPassage<'py>>>,
+    kind_of: PyReadonlyArray1<'py, u32>,
+    count: usize,
+    factors: Vec<PyFactors<'py>>,
+    gravity: f64,
+) -> PyResult<Matrix<'py>> {
+    let samples = Samples {
+        count,
+        kinds: kind_of.as_array().to_vec(),
+        factors: parameters(factors)?,
+        ..Samples::at_speed(0, count, 1.0)
+    };
+    let all = kinds.into_iter().map(|event| event.into_iter().map(passage).collect());
+    let kinds = all.collect::<Result<Vec<Vec<Passage>>, Error>>()?;
+    let vehicles = |event: &Vec<Passage>| event.iter().map(|passage| passage.vehicle.clone()).collect::<Vec<_>>();
+    let as_given: Vec<Vec<Vehicle>> = kinds.iter().map(vehicles).collect();
+    let borrowed: Vec<Vec<&Vehicle>> = as_given.iter().map(|event| event.iter().collect()).collect();
+    samples.check(&borrowed)?;
+    let contacts = |vehicle: &Vehicle| vehicle.assembly().contacts.len();
+    let axles = as_given.iter().map(|event| event.iter().map(contacts).sum::<usize>()).max().unwrap_or(0);
+    let loads = |vehicles: &[Vehicle]| {
+        let mut all: Vec<f64> = vehicles.iter().flat_map(|vehicle| vehicle.static_loads(gravity)).collect();
+        all.resize(axles, f64::NAN);
+        all
+    };
+    let nominal: Vec<Vec<f64>> = as_given.iter().map(|event| loads(event)).collect();
+    let all = interruptible(py, |go_on| {
+        let mut all = Vec::with_capacity(count * axles);
+        for sample in 0..count {
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+            let kind = samples.kind(sample);
+            match samples.varies_loads() {
                 // A sample whose vehicle cannot be has no results either.
-                true => alone::passages(&self.study, &self.samples, sample)
-                    .map_or_else(|_| vec![f64::NAN; self.layout.axles], |passages| loads(&passages)),
-                false => kinds[self.samples.kind(sample)].clone(),
-            };
-            (0..self.samples.count).flat_map(of).collect()
-        });
-        rows(py, all, self.layout.axles)
-    }
+                true => match alone::vehicles(&kinds[kind], &samples, sample) {
+                    Ok(vehicles) => all.extend(loads(&vehicles)),
+                    Err(_) => all.resize(all.len() + axles, f64::NAN),
+                },
+                false => all.extend_from_slice(&nominal[kind]),
+            }
+        }
+        Ok(all)
+    })?;
+    rows(py, all, axles)
+}
+
+/// Fingerprint of samples together, from that of each.
+#[pyfunction]
+pub fn fingerprint(digests: PyReadonlyArray1<'_, u64>) -> u64 {
+    fingerprint_of(digests.as_array().iter().copied())
+}
+
+fn parameters(factors: Vec<PyFactors<'_>>) -> Result<Vec<Factors>, Error> {
+    let of = |(name, width, values): PyFactors<'_>| {
+        Ok(Factors { parameter: Parameter::named(&name)?, width, values: values.as_array().to_vec() })
+    };
+    factors.into_iter().map(of).collect()
 }
 
 /// Computes many crossings.
@@ -253,15 +355,12 @@ pub fn ensemble<'py>(
     let all = kinds.into_iter().map(|passages| passages.into_iter().map(passage).collect());
     let kinds = all.collect::<Result<Vec<Vec<Passage>>, Error>>()?;
     let quantities = quantities.iter().map(|name| quantity(name)).collect::<Result<Vec<_>, Error>>()?;
-    let factors = factors.into_iter().map(|(name, width, values)| {
-        Ok(Factors { parameter: Parameter::named(&name)?, width, values: values.as_array().to_vec() })
-    });
     let samples = Samples {
         first,
         count,
         kinds: kind_of.as_array().to_vec(),
         speeds: speeds.as_array().to_vec(),
-        factors: factors.collect::<Result<Vec<_>, Error>>()?,
+        factors: parameters(factors)?,
     };
     let settings = Settings {
         drive: driven(drive)?,
@@ -296,7 +395,7 @@ pub fn ensemble<'py>(
     let digests = std::mem::take(&mut run.results.digests).into_pyarray(py);
     Ok(Ensemble {
         study,
-        samples,
+        quantities,
         workers,
         run,
         layout,

@@ -21,3 +21,8 @@ __all__ = [
     "compare_convergence",
     "compare_impact_factors",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is meant for users."""
+    return __all__

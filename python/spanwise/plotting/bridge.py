@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import choice, finite
 from spanwise._checks import count as whole_number
+from spanwise._keys import alike
 from spanwise.plotting import symbols
 from spanwise.plotting.style import (
     GREY,
@@ -193,7 +194,7 @@ class BridgePlot:
         choice("quantity", quantity, INFLUENCES)
         x = _with_both_sides(np.linspace(0.0, bridge.length, 401), at)
         line = bridge.influence_line(quantity, at, x, structure)
-        measure = INFLUENCES[quantity]
+        measure = INFLUENCES[cast("Quantity", alike(quantity, INFLUENCES))]
         ax = axes_for(ax)
         zero_line(ax)
         ax.fill_between(x, measure.factor * line, color=PALE, linewidth=0.0)

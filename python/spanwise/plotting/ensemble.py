@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._ensemblesummary import differ
+from spanwise._keys import alike
 from spanwise.plotting.envelope import branches
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
 from spanwise.plotting.style import (
     DYNAMIC,
     GREY,
+    MEASURES,
     PALE,
     STATIC,
     along,
@@ -34,8 +36,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.transforms import Transform
 
+    from spanwise._recipe import Quantity
     from spanwise.columns import SampleExtremes
-    from spanwise.population import Ensemble, Quantity
+    from spanwise.population import Ensemble
 
 #: The band that is drawn.
 BAND: Final = (5.0, 95.0)
@@ -76,7 +79,8 @@ class EnsemblePlot:
             If there are no such factors, no samples, or no static value to divide by.
         """
         ensemble = self._ensemble
-        values = ensemble.impact_factors(quantity)
+        quantity = cast("Factor", alike(quantity, FACTORS_OF))
+        values = ensemble.impact_factors[quantity]
         if len(ensemble.failures) < ensemble.samples and np.isnan(values).all():
             raise ValueError(
                 f"masked everywhere: no static value of {quantity!r} is large enough to divide by"
@@ -113,7 +117,7 @@ class EnsemblePlot:
         static value.
         """
         name, sense = FACTORS_OF[quantity]
-        extremes = getattr(self._ensemble, name)
+        extremes = self._ensemble.envelope(name)
         up, down = extremes.static_max, -extremes.static_min
         static = {"positive": up, "negative": down, "either": np.fmax(up, down)}[sense]
         static = np.nanmean(np.atleast_2d(static), axis=0)
@@ -147,13 +151,14 @@ class EnsemblePlot:
         ValueError
             If that was not looked at, or there are no samples.
         """
+        quantity = cast("Quantity", alike(quantity, MEASURES))
         ensemble, measure = self._ensemble, measure_of(quantity)
         if quantity not in ensemble.quantities:
             raise ValueError(
                 f"quantity = {quantity!r}: was not looked at; this ensemble has "
                 f"{', '.join(ensemble.quantities)}"
             )
-        extremes = getattr(ensemble, quantity)
+        extremes = ensemble.envelope(quantity)
         ax = axes_for(ax)
         by_section = quantity in ("deflection", "moment", "shear")
         several = by_section and len(extremes.x) > 1
@@ -161,7 +166,10 @@ class EnsemblePlot:
         for side, first in (("max", True), ("min", False)):
             x, curves = extremes.x, _curves(extremes, side)
             if quantity == "shear" and several:
-                both = [_curves(each, side) for each in (ensemble.shear_left, ensemble.shear_right)]
+                both = [
+                    _curves(each, side)
+                    for each in map(ensemble.envelope, ("shear_left", "shear_right"))
+                ]
                 cut = [
                     branches(extremes.x, curve, np.stack(sides, axis=-1), ensemble.supports)
                     for curve, *sides in zip(curves, *both, strict=True)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import count, finite
+from spanwise._keys import alike
 from spanwise.plotting.bridge import draw_bridge
 from spanwise.plotting.envelope import BY_SECTION, draw_bars, draw_curves
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
@@ -18,6 +19,7 @@ from spanwise.plotting.style import (
     GREY,
     HEIGHT,
     LINES,
+    MEASURES,
     PALE,
     STATIC,
     along,
@@ -135,6 +137,7 @@ class RunPlot:
         -------
         matplotlib.figure.Figure
         """
+        quantity = cast("Quantity", alike(quantity, MEASURES))
         run, measure = self._run, measure_of(quantity)
         ax = axes_for(ax)
         zero_line(ax)
@@ -203,6 +206,7 @@ class RunPlot:
         -------
         matplotlib.figure.Figure
         """
+        quantity = cast("Quantity", alike(quantity, MEASURES))
         run, measure = self._run, measure_of(quantity)
         index, where, side = column(run, quantity, at, side)
         dynamic, static = histories(run, quantity, index, side)

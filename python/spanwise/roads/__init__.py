@@ -28,3 +28,8 @@ __all__ = [
     "from_iri",
     "from_table",
 ]
+
+
+def __dir__() -> list[str]:
+    """What is meant for users."""
+    return __all__

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
+from spanwise._value import Brief
 from spanwise.roads import roughness
 from spanwise.roads.roughness import IriSegments
 
@@ -23,8 +24,8 @@ Array: TypeAlias = NDArray[np.float64]
 CONTACT_PATCH: Final = 0.24
 
 
-@dataclass(frozen=True)
-class Road:
+@dataclass(frozen=True, repr=False)
+class Road(Brief):
     """A road surface: elevation, slope and curvature at any x.
 
     x [m] runs from the left end of the bridge and is negative on the left approach; elevation [m]
@@ -315,7 +316,7 @@ class Road:
         return RoadPlot(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Smooth(Road):
     """The road without any roughness."""
 
@@ -325,7 +326,7 @@ class Smooth(Road):
         return CoreRoad.sum([])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sum(Road):
     """Several roads on top of each other, as ``+`` makes them.
 

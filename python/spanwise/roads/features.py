@@ -27,7 +27,7 @@ def _finite(key: str, value: float) -> float:
     return value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Step(_Feature):
     """A road that is higher from some place on.
 
@@ -56,7 +56,7 @@ class Step(_Feature):
         return _core.Road.step(self.at, self.height, self.contact_patch)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Ramp(_Feature):
     """A straight rise, after which the road stays as high.
 
@@ -83,7 +83,7 @@ class Ramp(_Feature):
         return _core.Road.ramp(self.start, self.end, self.height, self.contact_patch)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Bump(_Feature):
     """A bump of one cosine wave, height (1 - cos 2 pi s) / 2 with s from 0 to 1.
 
@@ -115,7 +115,7 @@ class Bump(_Feature):
         return _core.Road.plateau(self.at, self.length, self.height, edge, self.contact_patch)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Pothole(_Feature):
     """A hole with a flat bottom and vertical sides, or sides of half a cosine wave.
 
@@ -149,7 +149,7 @@ class Pothole(_Feature):
         return _core.Road.plateau(self.at, self.length, -depth, self.edge, self.contact_patch)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Joint(_Feature):
     """The gap of an expansion joint, with vertical sides.
 
@@ -185,7 +185,7 @@ class Joint(_Feature):
         return _core.Road.plateau(self.at, self.gap, -depth, 0.0, self.contact_patch)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Camber(_Feature):
     """A parabola from one place to another, 4 rise s (1 - s) with s from 0 to 1.
 

@@ -23,7 +23,7 @@ BRIDGE_STUDY: Final[Mapping[str, float]] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ISO8608(Road):
     """A random road whose power spectral density is G_d(n) = G_d(n0) (n/n0)^-w.
 

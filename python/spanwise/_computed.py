@@ -1,0 +1,83 @@
+"""A crossing that has been computed, as it travels to other processes and archives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise import _core
+from spanwise._core import __version__
+from spanwise._value import same
+from spanwise.bridge import Bridge
+from spanwise.traffic import Passage
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: What of a call the histories depend on beside the states.
+ASKED = ("modes", "damping", "damping_matrix", "sections", "recovery")
+
+
+def frozen(values: Array) -> Array:
+    """The array, kept from being changed by mistake: others read it too."""
+    values.setflags(write=False)
+    return values
+
+
+class Computed:
+    """States and extremes, from which histories are worked out and kept.
+
+    It travels as its states; the bridge is then analysed anew when histories are asked for.
+    """
+
+    def __init__(
+        self,
+        bridge: Bridge,
+        passages: tuple[Passage, ...],
+        asked: dict[str, Any],
+        core: _core.Crossing,
+    ) -> None:
+        self.bridge, self.passages = bridge, passages
+        self._asked = {key: asked[key] for key in ASKED}
+        self._histories: dict[str, list[Array]] = {}
+        # In place of what would be made of the states.
+        self.__dict__["core"] = core
+
+    @cached_property
+    def core(self) -> _core.Crossing:
+        """The crossing as the core has it."""
+        vehicles = [each.vehicle._core for each in self.passages]
+        return _core.Crossing.received(self.bridge._core, vehicles, self._state, **self._asked)
+
+    @cached_property
+    def _state(self) -> bytes:
+        return self.core.state
+
+    def histories(self, name: str) -> list[Array]:
+        """Dynamic and static responses of a kind at every instant, shape (time, place)."""
+        if name not in self._histories:
+            self._histories[name] = [frozen(values) for values in self.core.histories(name)]
+        return self._histories[name]
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = {name: getattr(self, name) for name in ("bridge", "passages", "_asked", "_state")}
+        return {**kept, "version": __version__}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        made_by = state.pop("version")
+        if made_by != __version__:
+            raise ValueError(
+                f"version = {made_by}: the run was kept by another version of spanwise than "
+                f"this, {__version__}; compute it again"
+            )
+        self.__dict__.update(state, _histories={})
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not Computed:
+            return NotImplemented
+        names = ("bridge", "_asked", "_state")
+        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+
+    __hash__ = None  # type: ignore[assignment]

@@ -1,0 +1,171 @@
+"""Several ensembles as one: parts computed at different times, or on different machines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spanwise._checks import is_list, shown
+from spanwise._events import Speeds
+from spanwise._recipe import Recipe
+from spanwise._rows import Rows
+from spanwise._value import same
+from spanwise._variation import Factors
+from spanwise.population import Ensemble
+
+Array: TypeAlias = NDArray[np.float64]
+
+#: Settings that each part has for its own samples.
+BY_SAMPLE = ("samples", "first", "speed", "kind", "factors")
+
+
+def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
+    """The ensemble of which these are parts, in the order of their numbers.
+
+    The result is that of one call for all samples, to the bit, `Ensemble.hash` included. Samples
+    that failed stay among the failures.
+
+    Parameters
+    ----------
+    ensembles : iterable of Ensemble
+        The parts, in any order: consecutive samples of one seed, of the same bridge, vehicles,
+        road and settings. Speeds, kinds and factors may differ from sample to sample.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    ValueError
+        If parts overlap, samples between them are missing, or they were not asked the same.
+
+    Examples
+    --------
+    >>> import spanwise as sw
+    >>> whole = sw.concat(map(sw.Ensemble.read, folder.glob("part*.npz")))  # doctest: +SKIP
+    """
+    if isinstance(ensembles, Ensemble) or not is_list(ensembles):
+        raise TypeError(f"ensembles = {shown(ensembles)}: must be a list of Ensemble")
+    given = [*ensembles]
+    for i, each in enumerate(given):
+        if not isinstance(each, Ensemble):
+            raise TypeError(f"ensembles[{i}] = {shown(each)}: must be an Ensemble")
+    if not given:
+        raise ValueError("ensembles = []: must be one or more")
+    order = sorted(range(len(given)), key=lambda i: (given[i].first, given[i].samples))
+    for before, i in pairwise(order):
+        _check_alike(given[order[0]], order[0], given[i], i)
+        _check_next(given[before], before, given[i], i)
+    parts = [given[i] for i in order]
+    if len(parts) == 1:
+        return parts[0]
+    recipe = _joined([each._recipe for each in parts])
+    return Ensemble(recipe, Rows.joined([each._rows for each in parts]))
+
+
+def _check_next(before: Ensemble, number: int, part: Ensemble, i: int) -> None:
+    """Refuses samples that are there twice, or not at all."""
+    end = before.first + before.samples
+    if part.first < end:
+        last = min(end, part.first + part.samples) - 1
+        raise ValueError(
+            f"ensembles[{i}]: samples {part.first} to {last} are in ensembles[{number}] too"
+        )
+    if part.first > end:
+        raise ValueError(
+            f"ensembles[{i}] = samples from {part.first}: samples {end} to {part.first - 1} are "
+            "missing before it"
+        )
+
+
+def _check_alike(one: Ensemble, number: int, part: Ensemble, i: int) -> None:
+    """Refuses a part that was asked something else, naming what."""
+    mine, others = one._recipe, part._recipe
+    for name, what in (("bridge", "bridge"), ("events", "vehicles"), ("quantities", "quantities")):
+        if not same(getattr(mine, name), getattr(others, name)):
+            raise ValueError(f"ensembles[{i}]: {what}: must be as in ensembles[{number}]")
+    ours, theirs = mine.settings, others.settings
+    for key in dict.fromkeys((*ours, *theirs)):
+        if key not in BY_SAMPLE and not same(ours.get(key), theirs.get(key)):
+            raise ValueError(
+                f"ensembles[{i}]: {key} = {shown(theirs.get(key))}: must be as in "
+                f"ensembles[{number}], {shown(ours.get(key))}"
+            )
+    widths = [
+        {each.name: each.values.shape[1] for each in recipe.factors} for recipe in (mine, others)
+    ]
+    if widths[0] != widths[1]:
+        names = ", ".join(f"{name} ({width})" for name, width in widths[1].items()) or "none"
+        raise ValueError(
+            f"ensembles[{i}]: factors = {names}: must be the same with as many parts as in "
+            f"ensembles[{number}]"
+        )
+    if [*one._rows.columns.items()] != [*part._rows.columns.items()]:
+        raise ValueError(f"ensembles[{i}]: is of another version than ensembles[{number}]")
+
+
+def _joined(recipes: Sequence[Recipe]) -> Recipe:
+    """What one call for all samples would have been told."""
+    first = recipes[0]
+    counts = [each.samples for each in recipes]
+    speeds = _speeds([each.speeds for each in recipes], counts)
+    kinds = first.kinds
+    if any(len(each.kinds) for each in recipes):
+        kinds = np.concatenate(
+            [
+                np.broadcast_to(each.kinds if len(each.kinds) else np.uint32(0), each.samples)
+                for each in recipes
+            ]
+        )
+    factors = [
+        Factors(each.name, _column([recipe.factors[k].values for recipe in recipes], counts))
+        for k, each in enumerate(first.factors)
+    ]
+    samples = sum(counts)
+    by_sample: dict[str, Any] = {
+        "samples": samples,
+        "first": first.first,
+        "speed": speeds.given,
+        "kind": kinds if len(first.events) > 1 else None,
+        "factors": {each.name: each.plain for each in factors} or None,
+    }
+    settings = {key: by_sample.get(key, value) for key, value in first.settings.items()}
+    return replace(
+        first,
+        samples=samples,
+        kinds=kinds,
+        speeds=speeds,
+        factors=factors,
+        settings={key: value for key, value in settings.items() if value is not None},
+    )
+
+
+def _speeds(parts: Sequence[Speeds], counts: Sequence[int]) -> Speeds:
+    """Those of all samples; one number where it is the same for all."""
+    first = parts[0].given
+    if not isinstance(first, np.ndarray) and all(same(each.given, first) for each in parts):
+        return parts[0]
+    rows = [each.column.reshape(-1, _width(each, n)) for each, n in zip(parts, counts, strict=True)]
+    column = _column(rows, counts)
+    given = column[:, 0] if column.shape[1] == 1 else column
+    return Speeds(given, np.ascontiguousarray(column).ravel())
+
+
+def _width(speeds: Speeds, samples: int) -> int:
+    """Speeds of a sample."""
+    return max(1, len(speeds.column) // samples) if samples and len(speeds.column) > 1 else 1
+
+
+def _column(parts: Sequence[Array], counts: Sequence[int]) -> Array:
+    """Rows of all samples; one row where it is the same for all."""
+    if all(len(each) == 1 and same(each, parts[0]) for each in parts) and sum(counts) != 1:
+        return parts[0]
+    width = max(each.shape[1] for each in parts)
+    rows = [np.broadcast_to(each, (n, width)) for each, n in zip(parts, counts, strict=True)]
+    return np.concatenate(rows)
