@@ -88,7 +88,8 @@ def cross(
     step : float, optional
         Longest time step [s]. By default a twentieth of the shortest coupled period, the time in
         which the fastest vehicle passes a hundredth of the narrowest panel or, on an uneven road,
-        50 mm or half of its shortest edge and contact patch, whichever is least.
+        50 mm or half of its shortest edge and contact patch, whichever is least. Panels narrower
+        than a quarter of the mean of their span count as that.
     beta : float, optional
         Newmark's beta: 1/6 for linear, 1/4 for constant average acceleration.
     gravity : float, optional
