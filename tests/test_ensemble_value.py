@@ -258,7 +258,7 @@ def test_what_is_no_archive(damage: str, tmp_path: Path) -> None:
 def test_what_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         sw.Ensemble.read(tmp_path / "out.npz")
-    with pytest.raises(ValueError, match="is not a regular file"):
+    with pytest.raises(OSError, match="is not a regular file"):
         sw.Ensemble.read(tmp_path)
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import is_list, shown
+from spanwise._checks import is_list, items, shown
 from spanwise._events import Speeds
 from spanwise._recipe import Recipe
 from spanwise._rows import Rows
@@ -52,7 +52,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     """
     if isinstance(ensembles, Ensemble) or not is_list(ensembles):
         raise TypeError(f"ensembles = {shown(ensembles)}: must be a list of Ensemble")
-    given = [*ensembles]
+    given = items("ensembles", ensembles, "a list of Ensemble")
     for i, each in enumerate(given):
         if not isinstance(each, Ensemble):
             raise TypeError(f"ensembles[{i}] = {shown(each)}: must be an Ensemble")
@@ -62,7 +62,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     for before, i in pairwise(order):
         _check_alike(given[order[0]], order[0], given[i], i)
         _check_next(given[before], before, given[i], i)
-    parts = [given[i] for i in order]
+    parts: list[Ensemble] = [given[i] for i in order]
     if len(parts) == 1:
         return parts[0]
     recipe = _joined([each._recipe for each in parts])

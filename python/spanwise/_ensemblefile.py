@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import stat
 from collections.abc import Callable, Iterator, Mapping
@@ -94,7 +95,7 @@ def npz_writer(ensemble: Ensemble) -> Callable[[BinaryIO], None]:
 def read_npz(path: Path) -> Ensemble:
     """The ensemble that was written there."""
     if not stat.S_ISREG(path.stat().st_mode):
-        raise ValueError(f"{path}: is not a regular file; an ensemble is a NumPy archive")
+        raise OSError(errno.EINVAL, "is not a regular file; an ensemble is one", str(path))
     try:
         with ZipFile(path) as members:
             # What expands could be larger than any memory.

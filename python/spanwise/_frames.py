@@ -37,13 +37,13 @@ PLACES: Final[dict[str, tuple[str, ...]]] = {
 def frame(ensemble: Ensemble, by: By) -> pd.DataFrame:
     """The table, as `Ensemble.to_pandas` describes it."""
     pandas = require("pandas", extra="pandas")
+    choice("by", by, ("sample", *PLACES))
     if by == "sample":
         numbers = ensemble.first + np.arange(ensemble.samples)
         index = pandas.Index(numbers, name="sample")
         table: pd.DataFrame = pandas.DataFrame(dict(_by_sample(ensemble)), index=index)
         table.attrs["governing"] = {name: x for name, (_, x) in _governing(ensemble).items()}
         return table
-    choice("by", by, ("sample", *PLACES))
     names = [each for each in PLACES[by] if each in (*ensemble.quantities, "axle_loads")]
     if not names:
         raise ValueError(f'by = "{by}": this ensemble has {", ".join(ensemble.quantities)}')

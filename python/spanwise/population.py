@@ -151,9 +151,10 @@ class SampleFactors:
 
     def __call__(self, quantity: Factor, mask: float | None = None) -> Array:
         """As it was before: a method of the ensemble."""
+        found = (self if mask is None else self._ensemble.ratios(mask))[quantity]
         new = "impact_factors" if mask is None else f"ratios(mask={mask})"
         renamed(f'Ensemble.impact_factors("{quantity}")', f"Ensemble.{new}.{quantity}")
-        return (self if mask is None else self._ensemble.ratios(mask))[quantity]
+        return found
 
     @property
     def sections(self) -> Array:
