@@ -524,7 +524,7 @@ def test_initial_friction_needs_a_force_for_each_axle(forces: tuple[float, ...])
 @pytest.mark.parametrize(
     ("quantity", "at", "x", "parts"),
     [
-        ("moments", 5.0, 1.0, ("quantity", "moments", "moment, shear-left")),
+        ("torque", 5.0, 1.0, ("quantity", "torque", "moment, shear-left")),
         (None, 5.0, 1.0, ("quantity", "None", "moment, shear-left")),
         ("moment", 40.0, 1.0, ("at", "40 m", IN_SPAN)),
         ("moment", nan, 1.0, ("at", "NaN", IN_SPAN)),

@@ -501,8 +501,11 @@ DOORS: Final[dict[str, Door]] = {
     "ISO8608": Door(sw.ISO8608, {"road_class": "A"}, also={"road_class": "class"}),
     "ISO8608(G)": Door(sw.ISO8608, {"G": 1e-6}, also={"road_class": "class"}),
     "Profile": Door(sw.Profile, PROFILE),
-    "Profile.read_csv": Door(
-        sw.Profile.read_csv, {"path": "profile.csv"}, raises=(OSError,), but=("path",)
+    "Profile.read": Door(
+        sw.Profile.read,
+        {"path": "profile.csv"},
+        raises=(OSError,),
+        also={"path": "profile file"},
     ),
     "Bump": Door(sw.Bump, {"at": 3.0, "length": 1.0, "height": 0.01}),
     "Camber": Door(sw.Camber, {"start": 0.0, "end": 18.0, "rise": 0.01}),
