@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -156,3 +157,11 @@ def test_what_a_module_shows() -> None:
     assert "annotations" not in dir(sw.vehicles)
     assert "FOOT" not in dir(sw.vehicles)
     assert callable(sw.ensemble)
+
+
+def test_a_function_is_no_module_too() -> None:
+    package = Path(sw.__file__).parent
+    modules = {path.stem for path in package.glob("*.py")}
+    both = {name for name in modules & {*sw.__all__} if callable(getattr(sw, name))}
+    assert not both
+    assert not hasattr(sw, "run")

@@ -8,7 +8,7 @@ from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case, CaseError
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
-from spanwise.ensemble import ensemble
+from spanwise.ensembles import ensemble
 from spanwise.layout import Along, Support
 from spanwise.population import Ensemble, Failure
 from spanwise.roads import (
@@ -22,7 +22,7 @@ from spanwise.roads import (
     Smooth,
     Step,
 )
-from spanwise.run import Envelope, Extremes, LiftOff, Run
+from spanwise.runs import Envelope, Extremes, LiftOff, Run
 from spanwise.table import ImpactFactors
 from spanwise.traffic import Acceleration, Braking, Passage, Speeds, convoy
 from spanwise.trains import ForceTrain, MovingMasses

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._values import axle_names, envelope, history, places, plain, quantities
-from spanwise.run import Motion, Quantity, Run, VehicleMotion
+from spanwise.runs import Motion, Quantity, Run, VehicleMotion
 from spanwise.table import COLUMNS
 
 Array: TypeAlias = NDArray[np.float64]

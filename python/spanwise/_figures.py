@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from io import BytesIO
 
 from spanwise._extras import require
-from spanwise.run import Run
+from spanwise.runs import Run
 
 
 def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:

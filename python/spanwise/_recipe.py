@@ -19,7 +19,7 @@ from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
-from spanwise.run import Run
+from spanwise.runs import Run
 from spanwise.traffic import Drive
 from spanwise.traffic import Speeds as SpeedsInTime
 from spanwise.trains import ForceTrain, MovingMasses

@@ -8,7 +8,7 @@ from spanwise.traffic import Acceleration, Braking, Drive, Passage, Speeds, driv
 from spanwise.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from spanwise.run import Run
+    from spanwise.runs import Run
 
 
 def remarks(run: Run, vehicle: int) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import named, shown
-from spanwise.run import QUANTITIES, Quantity, Run
+from spanwise.runs import QUANTITIES, Quantity, Run
 
 Array: TypeAlias = NDArray[np.float64]
 

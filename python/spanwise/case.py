@@ -20,11 +20,11 @@ from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
-from spanwise.ensemble import ensemble
+from spanwise.ensembles import ensemble
 from spanwise.population import Ensemble
 from spanwise.roads import Road
 from spanwise.roads.table import KINDS as ROADS
-from spanwise.run import Run
+from spanwise.runs import Run
 from spanwise.traffic import KINDS as DRIVES
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle

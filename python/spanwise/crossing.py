@@ -16,7 +16,7 @@ from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping
 from spanwise.roads import Road, Smooth
-from spanwise.run import Run
+from spanwise.runs import Run
 from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
 from spanwise.vehicles import AnyVehicle
 

@@ -20,7 +20,7 @@ from spanwise._renamed import renamed
 from spanwise._rows import Rows
 from spanwise._value import Value
 from spanwise.columns import Array, Moments, SampleExtremes, Sense, frozen
-from spanwise.run import Run
+from spanwise.runs import Run
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -20,7 +20,7 @@ from spanwise.plotting.style import (
     whole,
     zero_line,
 )
-from spanwise.run import Run
+from spanwise.runs import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -21,7 +21,7 @@ from spanwise.plotting.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.run import Envelope, Quantity, Run
+    from spanwise.runs import Envelope, Quantity, Run
 
 Array: TypeAlias = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from spanwise.plotting.style import LIFTED, metres
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.run import Quantity, Responses, Run
+    from spanwise.runs import Quantity, Responses, Run
 
 Array: TypeAlias = NDArray[np.float64]
 Side: TypeAlias = Literal["left", "right"]

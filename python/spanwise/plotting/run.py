@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-    from spanwise.run import Quantity, Run
+    from spanwise.runs import Quantity, Run
     from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
