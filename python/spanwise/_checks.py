@@ -19,7 +19,7 @@ from spanwise._keys import alike, suggestion
 from spanwise._shown import LONGEST
 from spanwise._shown import shown as shown
 
-Name = TypeVar("Name", bound=str)
+Name = TypeVar("Name")
 
 Numbers: TypeAlias = float | Iterable[float]
 
@@ -138,7 +138,7 @@ def choice(key: str, value: object, options: Iterable[str]) -> str:
     return str(value)
 
 
-def named(key: str, value: object, options: Iterable[Name]) -> Name:
+def named(key: str, value: Name, options: Iterable[str]) -> Name:
     """The option that is meant, with hyphens or underscores, in singular or plural."""
     allowed = [*options]
     meant = alike(value, allowed)

@@ -449,7 +449,7 @@ class Ensemble:
         least = self._recipe.conditions.mask if mask is None else masked(mask)
         return SampleFactors(self, least)
 
-    def _factors(self, quantity: object, mask: float) -> Array:
+    def _factors(self, quantity: Factor, mask: float) -> Array:
         """Those of one kind, shape (sample, section, support or axle)."""
         name = named("quantity", quantity, FACTORS)
         of, sense = FACTORS[name]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import choice, finite
 from spanwise._checks import count as whole_number
-from spanwise._keys import alike
+from spanwise._checks import finite, named
 from spanwise.plotting import symbols
 from spanwise.plotting.style import (
     GREY,
@@ -191,10 +190,10 @@ class BridgePlot:
         """
         bridge = self._bridge
         at = finite("at", at)
-        choice("quantity", quantity, INFLUENCES)
+        quantity = named("quantity", quantity, INFLUENCES)
         x = _with_both_sides(np.linspace(0.0, bridge.length, 401), at)
         line = bridge.influence_line(quantity, at, x, structure)
-        measure = INFLUENCES[cast("Quantity", alike(quantity, INFLUENCES))]
+        measure = INFLUENCES[quantity]
         ax = axes_for(ax)
         zero_line(ax)
         ax.fill_between(x, measure.factor * line, color=PALE, linewidth=0.0)

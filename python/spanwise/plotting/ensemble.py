@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._checks import named
 from spanwise._ensemblesummary import differ
-from spanwise._keys import alike
 from spanwise.plotting.envelope import branches
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
 from spanwise.plotting.style import (
@@ -79,7 +79,7 @@ class EnsemblePlot:
             If there are no such factors, no samples, or no static value to divide by.
         """
         ensemble = self._ensemble
-        quantity = cast("Factor", alike(quantity, FACTORS_OF))
+        quantity = named("quantity", quantity, FACTORS_OF)
         values = ensemble.impact_factors[quantity]
         if len(ensemble.failures) < ensemble.samples and np.isnan(values).all():
             raise ValueError(
@@ -151,7 +151,7 @@ class EnsemblePlot:
         ValueError
             If that was not looked at, or there are no samples.
         """
-        quantity = cast("Quantity", alike(quantity, MEASURES))
+        quantity = named("quantity", quantity, MEASURES)
         ensemble, measure = self._ensemble, measure_of(quantity)
         if quantity not in ensemble.quantities:
             raise ValueError(

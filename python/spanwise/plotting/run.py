@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias, cast
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import count, finite
-from spanwise._keys import alike
+from spanwise._checks import count, finite, named
 from spanwise.plotting.bridge import draw_bridge
 from spanwise.plotting.envelope import BY_SECTION, draw_bars, draw_curves
 from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
@@ -137,7 +136,7 @@ class RunPlot:
         -------
         matplotlib.figure.Figure
         """
-        quantity = cast("Quantity", alike(quantity, MEASURES))
+        quantity = named("quantity", quantity, MEASURES)
         run, measure = self._run, measure_of(quantity)
         ax = axes_for(ax)
         zero_line(ax)
@@ -206,7 +205,7 @@ class RunPlot:
         -------
         matplotlib.figure.Figure
         """
-        quantity = cast("Quantity", alike(quantity, MEASURES))
+        quantity = named("quantity", quantity, MEASURES)
         run, measure = self._run, measure_of(quantity)
         index, where, side = column(run, quantity, at, side)
         dynamic, static = histories(run, quantity, index, side)
