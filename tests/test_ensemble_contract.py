@@ -290,7 +290,7 @@ MEASURE = """
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
     found = sw.ensemble(bridge, vehicle, samples=int(sys.argv[1]), **given)
     after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
-    arrays = found._numbers.nbytes + found._instants.nbytes + found.digests.nbytes
+    arrays = found._rows.numbers.nbytes + found._rows.instants.nbytes + found.digests.nbytes
     assert not found.failures
     print(after - before - arrays, arrays)
 """
