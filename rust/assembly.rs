@@ -3,8 +3,9 @@
 //! Coordinates q are counted from the static state, displacements down and rotations nose down. Without contact forces
 //! and friction M q̈ + C q̇ + K q = 0; every contact and friction force enters through its row.
 
-use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
+use crate::dense;
 use crate::error::Error;
 use crate::vehicle::{Axle, Body, Coupling, Suspension};
 
@@ -281,7 +282,13 @@ type Part = (f64, DVector<f64>, f64);
 
 /// A sum of squares, k rowᵀ row, as it goes into a matrix.
 fn add(matrix: &mut DMatrix<f64>, factor: f64, row: &DVector<f64>) {
-    matrix.ger(factor, row, row, 1.0);
+    // Of a long vehicle nearly all of it is zero.
+    let some: Vec<(usize, f64)> = row.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect();
+    for &(j, b) in &some {
+        for &(i, a) in &some {
+            matrix[(i, j)] += factor * b * a;
+        }
+    }
 }
 
 impl Assembly {
@@ -427,15 +434,11 @@ impl Assembly {
         if n == 0 {
             return none; // a train has nothing that vibrates
         }
-        let Some(root) = Cholesky::new(self.mass.clone()) else { return none };
-        let inverse = root.l().solve_lower_triangular(&DMatrix::identity(n, n)).unwrap_or_else(|| DMatrix::zeros(n, n));
-        let scaled = &inverse * self.grounded_stiffness(suspension) * inverse.transpose();
-        // A bound on the iterations, because stiffnesses that overflow would keep it going.
-        let Some(eigen) = SymmetricEigen::try_new(scaled, f64::EPSILON, 1000) else { return none };
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
-        let frequencies = order.iter().map(|&i| eigen.eigenvalues[i].max(0.0).sqrt() / std::f64::consts::TAU);
-        (frequencies.collect(), inverse.transpose() * eigen.eigenvectors.select_columns(&order))
+        let Some((squares, shapes)) = dense::vibrations(&self.mass, self.grounded_stiffness(suspension)) else {
+            return none;
+        };
+        let frequencies = squares.iter().map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU);
+        (frequencies.collect(), shapes)
     }
 
     fn connect(&mut self, row: DVector<f64>, stiffness: f64, damping: f64, friction: Friction) {

@@ -13,10 +13,7 @@ use crate::modes::Modes;
 use crate::path::{Free, Ground, ModeShapes, Prescribed};
 use crate::settings::Settings;
 use crate::steps::{Steps, narrowest_panel};
-use crate::vehicle::{Suspension, Vehicle};
-
-/// Most axles of all vehicles together: each presses on each other through the bridge.
-pub const MAX_AXLES: usize = 500;
+use crate::vehicle::{MAX_AXLES, Suspension, Vehicle};
 
 /// The bridge in modal coordinates, ready to be crossed.
 #[derive(Debug, Clone)]
@@ -134,7 +131,7 @@ pub fn cross_all(
     } else {
         // One more than needed, so that rounding of the tail does not matter.
         let with_tail = steps.count + (settings.tail / steps.h).ceil() as usize + 1;
-        let mut geometry = Prescribed::new(ground, motion, with_tail, rates);
+        let mut geometry = Prescribed::new(ground, motion, with_tail, rates, go_on)?;
         March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), go_on)
     }
 }

@@ -7,7 +7,7 @@ use crate::modal::ModalDamping;
 use crate::modes::Modes;
 
 /// Viscous damping of the bridge.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Damping {
     /// Ratio to critical, one for all modes or one for each.
     Ratios(Vec<f64>),
@@ -20,6 +20,20 @@ pub enum Damping {
     },
     /// C at the mass stations [N s/m]: D = ΦᵀCΦ is full in general.
     Viscous(Mat<f64>),
+}
+
+impl PartialEq for Damping {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Damping::Ratios(a), Damping::Ratios(b)) => a == b,
+            (Damping::Rayleigh { mass, stiffness }, Damping::Rayleigh { mass: m, stiffness: s }) => {
+                mass == m && stiffness == s
+            }
+            // Matrices of different shapes have no comparison of their own.
+            (Damping::Viscous(a), Damping::Viscous(b)) => a.shape() == b.shape() && a == b,
+            _ => false,
+        }
+    }
 }
 
 impl Damping {

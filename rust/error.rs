@@ -91,6 +91,9 @@ pub enum Error {
         /// Position of the front axle [m].
         position: f64,
     },
+    /// The system starts no thread.
+    #[error("no thread can be started: {0}")]
+    Threads(String),
     /// The caller asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -7,7 +7,8 @@
 //! other outer restraints make it the *basic bridge*, the intermediate redundant ones make it the bridge without its
 //! hinges. Each layer is KTN73 Eqs. 12–14 with a unit action for the load; a spring adds its compliance to the diagonal
 //! of the restraints' flexibility. Hinges come last, as the kinks that take the moments there away. No stiffness matrix
-//! is formed or inverted except K^R, of the order of the number of redundants.
+//! is formed or inverted except K^R, of the order of the number of redundants. Once the redundants' forces are known the
+//! beam is integrated anew under all of them, so that a shape costs no more than its panels and K^R.
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
@@ -67,60 +68,48 @@ enum Determinate {
 /// A restraint, and how far it gives way under a unit force or couple [m/N or rad/(N m)]: zero where it is rigid.
 type Spring = (Restraint, f64);
 
-/// Restraints added to the structure below, with its deflected shapes under their unit forces.
+/// Actions that come together, and how much of each.
+pub type Actions = Vec<(f64, Action)>;
+
+/// Shapes that are worked out together: enough for one pass over K^R to serve many, few enough to ask in between.
+pub const TOGETHER: usize = 64;
+
+/// Restraints added to the structure below.
 #[derive(Debug, Clone)]
 struct Layer {
     restraints: Vec<Restraint>,
-    lines: Vec<Line>,
     /// Cholesky factor of the restraints' flexibility in the structure below, their own included: F*_RR + C_s for the
     /// intermediate supports.
     factor: Option<Llt<f64>>,
 }
 
 impl Layer {
-    fn new(mesh: &Mesh, springs: &[Spring], lines: Vec<Line>) -> Result<Self, Error> {
-        let n = springs.len();
-        let restraints: Vec<Restraint> = springs.iter().map(|s| s.0).collect();
-        let flexibility = Mat::from_fn(n, n, |i, j| {
-            let own = if i == j { springs[i].1 } else { 0.0 };
-            displacement(mesh, &lines[j.min(i)], restraints[j.max(i)]) + own
-        });
-        let factor = match n {
+    const NONE: Layer = Layer { restraints: Vec::new(), factor: None };
+
+    /// From the lower triangle of the flexibility.
+    fn new(restraints: Vec<Restraint>, flexibility: &Mat<f64>) -> Result<Self, Error> {
+        let factor = match restraints.len() {
             0 => None,
             _ => Some(Llt::new(flexibility.as_ref(), Side::Lower).map_err(|e| Error::Singular(format!("{e:?}")))?),
         };
-        Ok(Layer { restraints, lines, factor })
+        Ok(Layer { restraints, factor })
     }
 
     /// Restraint forces (down; couples in the sense of positive slope) that displace the restraints by `displacements`,
-    /// their springs included.
-    fn forces(&self, displacements: &[f64]) -> Vec<f64> {
-        let Some(factor) = &self.factor else { return Vec::new() };
-        let mut forces = Mat::from_fn(displacements.len(), 1, |i, _| displacements[i]);
-        factor.solve_in_place(forces.as_mut());
-        forces.col(0).iter().copied().collect()
-    }
-
-    fn add_forces(&self, line: &mut Line, forces: &[f64]) {
-        for (&force, unit) in forces.iter().zip(&self.lines) {
-            line.add_scaled(force, unit);
+    /// their springs included: a column for each case.
+    fn forces(&self, mut displacements: Mat<f64>) -> Mat<f64> {
+        if let Some(factor) = &self.factor {
+            factor.solve_in_place(displacements.as_mut());
         }
-    }
-
-    /// Restrains a shape of the structure below.
-    fn restrain(&self, mesh: &Mesh, line: &mut Line) {
-        // [KTN73] Eq. 13: R = -K^R y^R, then Eq. 14.
-        let opposite: Vec<f64> = self.restraints.iter().map(|&r| -displacement(mesh, line, r)).collect();
-        self.add_forces(line, &self.forces(&opposite));
+        displacements
     }
 }
 
-/// The hinges, with the shapes of the bridge without them under a unit kink at each.
+/// The hinges.
 #[derive(Debug, Clone)]
 struct Hinges {
     nodes: Vec<usize>,
-    lines: Vec<Line>,
-    /// Cholesky factor of the moments that resist these kinks [N m/rad].
+    /// Cholesky factor of the moments that resist a unit kink at each, in the bridge without hinges [N m/rad].
     factor: Option<Llt<f64>>,
 }
 
@@ -129,24 +118,31 @@ struct Hinges {
 const FREE_TO_TURN: f64 = 1e-10;
 
 impl Hinges {
-    fn none() -> Self {
-        Hinges { nodes: Vec::new(), lines: Vec::new(), factor: None }
-    }
+    const NONE: Hinges = Hinges { nodes: Vec::new(), factor: None };
 
-    /// `lines` are the shapes under a unit kink at each of the `nodes`, left to right.
-    fn new(nodes: Vec<usize>, lines: Vec<Line>, flexibility: &Flexibility) -> Result<Self, Error> {
+    /// At the `nodes`, left to right, of a bridge without hinges.
+    fn new(nodes: Vec<usize>, flexibility: &Flexibility) -> Result<Self, Error> {
         let n = nodes.len();
         if n == 0 {
-            return Ok(Hinges::none());
+            return Ok(Hinges::NONE);
         }
-        // Symmetric by reciprocity.
-        let resistance = Mat::from_fn(n, n, |i, j| -flexibility.bending_moment(&lines[j.min(i)], nodes[j.max(i)]));
+        // By rows of the lower triangle: symmetric by reciprocity.
+        let mut resistance: Vec<Vec<f64>> = (0..n).map(|i| Vec::with_capacity(i + 1)).collect();
+        for some in nodes.chunks(TOGETHER) {
+            let kinks: Vec<Actions> = some.iter().map(|&node| vec![(1.0, Action::Kink(node))]).collect();
+            for line in flexibility.shapes(&kinks, 2) {
+                let first = resistance[n - 1].len();
+                for (row, &node) in resistance.iter_mut().zip(&nodes).skip(first) {
+                    row.push(-flexibility.bending_moment(&line, node));
+                }
+            }
+        }
         let softest = flexibility.flexural_rigidity.iter().copied().fold(f64::INFINITY, f64::min);
         let scale = softest / flexibility.mesh.length();
-        let mut lower = Mat::<f64>::zeros(n, n);
+        let mut lower: Vec<Vec<f64>> = vec![Vec::new(); n];
         for j in 0..n {
-            let known = |i: usize, lower: &Mat<f64>| (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
-            let whole = resistance[(j, j)];
+            let known = |i: usize, lower: &[Vec<f64>]| lower[i].iter().zip(&lower[j]).map(|(a, b)| a * b).sum::<f64>();
+            let whole = resistance[j][j];
             let left = whole - known(j, &lower);
             // Written so that a NaN fails.
             if !(whole > FREE_TO_TURN * scale && left > FREE_TO_TURN * whole) {
@@ -154,22 +150,29 @@ impl Hinges {
                 return Err(Error::Mechanism { hinge: j, at });
             }
             let root = left.sqrt();
-            for i in j..n {
-                lower[(i, j)] = (resistance[(i, j)] - known(i, &lower)) / root;
+            for i in j + 1..n {
+                let entry = (resistance[i][j] - known(i, &lower)) / root;
+                lower[i].push(entry);
             }
         }
+        let resistance = Mat::from_fn(n, n, |i, j| resistance[i.max(j)][i.min(j)]);
         let factor = Llt::new(resistance.as_ref(), Side::Lower).map_err(|e| Error::Singular(format!("{e:?}")))?;
-        Ok(Hinges { nodes, lines, factor: Some(factor) })
+        Ok(Hinges { nodes, factor: Some(factor) })
     }
 
-    /// Takes the moments at the hinges out of a shape of the bridge without hinges.
-    fn release(&self, flexibility: &Flexibility, line: &mut Line) {
+    /// Takes the moments at the hinges out of shapes of the bridge without hinges.
+    fn release(&self, flexibility: &Flexibility, lines: &mut [Line]) {
         let Some(factor) = &self.factor else { return };
         // M_h + Σ α_j M_h(kink j) = 0.
-        let mut kinks = Mat::from_fn(self.nodes.len(), 1, |i, _| flexibility.bending_moment(line, self.nodes[i]));
+        let moment = |i: usize, j: usize| flexibility.bending_moment(&lines[j], self.nodes[i]);
+        let mut kinks = Mat::from_fn(self.nodes.len(), lines.len(), moment);
         factor.solve_in_place(kinks.as_mut());
-        for (&kink, unit) in kinks.col(0).iter().zip(&self.lines) {
-            line.add_scaled(kink, unit);
+        let turned = |j: usize| {
+            kinks.col(j).iter().zip(&self.nodes).map(|(&k, &node)| (k, Action::Kink(node))).collect::<Actions>()
+        };
+        let turned: Vec<Actions> = (0..lines.len()).map(turned).collect();
+        for (line, turned) in lines.iter_mut().zip(flexibility.shapes(&turned, 2)) {
+            line.add_scaled(1.0, &turned);
         }
     }
 }
@@ -235,22 +238,28 @@ impl Flexibility {
             (1..last.max(1)).flat_map(|i| [Some(deflection(i)), slope(i)]).flatten().collect();
 
         refuse_soft_base(bridge, [0, last], &flexural_rigidity)?;
-        let none = Layer { restraints: Vec::new(), lines: Vec::new(), factor: None };
         let hinges: Vec<usize> = bridge.hinges().iter().map(|&x| mesh.node_at(x)).collect();
         let mut flexibility = Flexibility {
             mesh,
             flexural_rigidity,
             determinate,
             support,
-            layers: [none.clone(), none],
-            hinges: Hinges::none(),
+            layers: [Layer::NONE, Layer::NONE],
+            hinges: Hinges::NONE,
         };
         for (depth, springs) in [outer, intermediate].into_iter().enumerate() {
-            let lines = springs.iter().map(|&(r, _)| flexibility.deflected_to(unit_force(r), depth)).collect();
-            flexibility.layers[depth] = Layer::new(&flexibility.mesh, &springs, lines)?;
+            let mut among = Mat::zeros(springs.len(), springs.len());
+            for (j, &(restraint, compliance)) in springs.iter().enumerate() {
+                let line = flexibility.shape(&[(1.0, unit_force(restraint))], depth);
+                for (i, &(other, _)) in springs.iter().enumerate().skip(j) {
+                    among[(i, j)] = displacement(&flexibility.mesh, &line, other);
+                }
+                among[(j, j)] += compliance;
+            }
+            let restraints = springs.iter().map(|spring| spring.0).collect();
+            flexibility.layers[depth] = Layer::new(restraints, &among)?;
         }
-        let lines = hinges.iter().map(|&node| flexibility.deflected_to(Action::Kink(node), 2)).collect();
-        flexibility.hinges = Hinges::new(hinges, lines, &flexibility)?;
+        flexibility.hinges = Hinges::new(hinges, &flexibility)?;
         Ok(flexibility)
     }
 
@@ -261,12 +270,26 @@ impl Flexibility {
 
     /// Deflected shape under a unit action [m per N, per N m, per rad or per m].
     pub fn deflected(&self, action: Action, structure: Structure) -> Line {
+        self.deflected_by(&[(1.0, action)], structure)
+    }
+
+    /// Deflected shape under several actions that come together.
+    pub fn deflected_by(&self, actions: &[(f64, Action)], structure: Structure) -> Line {
+        self.all_of(&[actions], structure).swap_remove(0)
+    }
+
+    /// Deflected shapes under one case of actions after another.
+    pub fn each_deflected(&self, cases: &[Actions], structure: Structure) -> Vec<Line> {
+        cases.chunks(TOGETHER).flat_map(|some| self.all_of(some, structure)).collect()
+    }
+
+    fn all_of<A: AsRef<[(f64, Action)]>>(&self, cases: &[A], structure: Structure) -> Vec<Line> {
         match structure {
-            Structure::Basic => self.deflected_to(action, 1),
+            Structure::Basic => self.shapes(cases, 1),
             Structure::Actual => {
-                let mut line = self.deflected_to(action, 2);
-                self.hinges.release(self, &mut line);
-                line
+                let mut lines = self.shapes(cases, 2);
+                self.hinges.release(self, &mut lines);
+                lines
             }
         }
     }
@@ -306,6 +329,12 @@ impl Flexibility {
         &self.layers[1].restraints
     }
 
+    /// Whether a structure has a restraint.
+    pub fn holds(&self, restraint: Restraint, structure: Structure) -> bool {
+        let layers = if structure == Structure::Actual { &self.layers[..] } else { &self.layers[..1] };
+        self.support.iter().any(|s| s.0 == restraint) || layers.iter().any(|l| l.restraints.contains(&restraint))
+    }
+
     /// All restraints of a structure, left to right: deflection before slope.
     pub fn restraints(&self, structure: Structure) -> Vec<Restraint> {
         let mut all = self.outer_restraints();
@@ -319,22 +348,28 @@ impl Flexibility {
     /// R = −K^R y^R: the redundant reactions as loads (down, couples in the sense of positive slope) that undo the
     /// deflections y^R [m] and slopes [rad] (KTN73 Eq. 13).
     pub fn redundant_reactions(&self, deflections: &[f64]) -> Vec<f64> {
-        let opposite: Vec<f64> = deflections.iter().map(|y| -y).collect();
-        self.layers[1].forces(&opposite)
+        let forces = self.layers[1].forces(Mat::from_fn(deflections.len(), 1, |i, _| -deflections[i]));
+        forces.col(0).iter().copied().collect()
     }
 
     /// K^R, the inverse of F*_RR and the redundants' own flexibility, by its Cholesky factor [N/m] (KTN73 §2.3).
     pub fn redundant_stiffness(&self) -> Mat<f64> {
         let n = self.redundants().len();
-        let columns: Vec<Vec<f64>> =
-            (0..n).map(|j| self.layers[1].forces(&(0..n).map(|i| f64::from(i == j)).collect::<Vec<_>>())).collect();
-        Mat::from_fn(n, n, |i, j| columns[j][i])
+        self.layers[1].forces(Mat::identity(n, n))
     }
 
     /// Deflections at `rows` for unit forces at `columns` (nodes) [m/N]: F* on the basic bridge, F on the actual one.
     pub fn matrix(&self, rows: &[usize], columns: &[usize], structure: Structure) -> Mat<f64> {
-        let lines: Vec<Line> = columns.iter().map(|&node| self.deflected(Action::Force(node), structure)).collect();
-        Mat::from_fn(rows.len(), columns.len(), |i, j| lines[j].at_node(rows[i]))
+        let mut matrix = Mat::zeros(rows.len(), columns.len());
+        for (part, some) in columns.chunks(TOGETHER).enumerate() {
+            let forces: Vec<Actions> = some.iter().map(|&node| vec![(1.0, Action::Force(node))]).collect();
+            for (j, line) in (part * TOGETHER..).zip(self.all_of(&forces, structure)) {
+                for (i, &row) in rows.iter().enumerate() {
+                    matrix[(i, j)] = line.at_node(row);
+                }
+            }
+        }
+        matrix
     }
 
     /// Nodes of the mass stations and the intermediate redundant supports, left to right: the order of F* in KTN73.
@@ -347,75 +382,103 @@ impl Flexibility {
         nodes
     }
 
-    fn deflected_to(&self, action: Action, depth: usize) -> Line {
-        let settling = match action {
-            Action::Settlement(restraint) => self.layers.iter().position(|l| l.restraints.contains(&restraint)),
-            _ => None,
-        };
-        let mut line = match settling {
-            // A restraint above the determinate beam settles: nothing happens below its layer.
-            Some(_) => Line::straight(&self.mesh, 0.0, 0.0),
-            None => self.determinate_shape(action),
-        };
-        for (level, layer) in self.layers[..depth].iter().enumerate() {
-            match (settling, action) {
-                (Some(own), _) if level < own => {}
-                (Some(own), Action::Settlement(restraint)) if level == own => {
-                    let unit: Vec<f64> = layer.restraints.iter().map(|&r| f64::from(r == restraint)).collect();
-                    layer.add_forces(&mut line, &layer.forces(&unit));
-                }
-                _ => layer.restrain(&self.mesh, &mut line),
+    fn shape(&self, actions: &[(f64, Action)], depth: usize) -> Line {
+        self.shapes(&[actions], depth).swap_remove(0)
+    }
+
+    /// Shapes under several cases of actions, of the structure with so many layers of restraints.
+    fn shapes<A: AsRef<[(f64, Action)]>>(&self, cases: &[A], depth: usize) -> Vec<Line> {
+        let mut lines: Vec<Line> = cases.iter().map(|actions| self.determinate_shape(actions.as_ref())).collect();
+        for (level, layer) in self.layers[..depth].iter().enumerate().filter(|(_, layer)| layer.factor.is_some()) {
+            // [KTN73] Eq. 13: R = -K^R y^R, then Eq. 14; a restraint that settles is displaced by that much more.
+            let missing = |i: usize, j: usize| {
+                let restraint = layer.restraints[i];
+                settlement(cases[j].as_ref(), restraint) - displacement(&self.mesh, &lines[j], restraint)
+            };
+            let forces = layer.forces(Mat::from_fn(layer.restraints.len(), cases.len(), missing));
+            let reactions = |j: usize| {
+                let forces = forces.col(j).iter().zip(&layer.restraints);
+                forces.map(|(&force, &restraint)| (force, unit_force(restraint))).collect::<Actions>()
+            };
+            let reactions: Vec<Actions> = (0..cases.len()).map(reactions).collect();
+            for (line, restrained) in lines.iter_mut().zip(self.shapes(&reactions, level)) {
+                line.add_scaled(1.0, &restrained);
             }
         }
-        line
+        lines
     }
 
     /// Shape of the determinate beam on its springs: on rigid supports, and each spring gives way under its reaction.
-    fn determinate_shape(&self, action: Action) -> Line {
-        if let Action::Settlement(restraint) = action {
-            return self.rigid_settlement(restraint);
-        }
-        let mut line = self.rigidly_supported_shape(action);
-        for &(restraint, compliance) in self.support.iter().filter(|s| s.1 > 0.0) {
+    fn determinate_shape(&self, actions: &[(f64, Action)]) -> Line {
+        let mut line = self.rigidly_supported_shape(actions);
+        for &(restraint, compliance) in &self.support {
+            let settles = settlement(actions, restraint);
+            if compliance == 0.0 && settles == 0.0 {
+                continue;
+            }
             let settled = self.rigid_settlement(restraint);
             // By virtual work the reaction, here as a load on the spring, is what the action does on a unit settlement;
             // a kink or a jump calls for none.
-            let load = match action {
-                Action::Force(node) => settled.at_node(node),
-                Action::Couple(node) => settled.slope_at_node(&self.mesh, node),
+            let work = actions.iter().map(|&(size, action)| match action {
+                Action::Force(node) => size * settled.at_node(node),
+                Action::Couple(node) => size * settled.slope_at_node(&self.mesh, node),
                 Action::Kink(_) | Action::Jump(_) | Action::Settlement(_) => 0.0,
-            };
-            line.add_scaled(compliance * load, &settled);
+            });
+            line.add_scaled(compliance * work.sum::<f64>() + settles, &settled);
         }
         line
     }
 
-    /// Moments from the left, curvature −M/EI integrated twice, rigid body to the supports.
-    fn rigidly_supported_shape(&self, action: Action) -> Line {
+    /// Shear and moment from the left, curvature −M/EI integrated twice, rigid body to the supports.
+    fn rigidly_supported_shape(&self, actions: &[(f64, Action)]) -> Line {
         let x = self.mesh.nodes();
         let end = self.mesh.panels();
-        let (force, couple, at) = match action {
-            Action::Force(node) => (1.0, 0.0, node),
-            Action::Couple(node) => (0.0, 1.0, node),
-            Action::Kink(node)
-            | Action::Jump(node)
-            | Action::Settlement(Restraint::Deflection(node) | Restraint::Slope(node)) => (0.0, 0.0, node),
+        // A couple at a node acts on the panel to its right.
+        let mut nodes = vec![AtNode::default(); end + 1];
+        let (mut force, mut couple, mut about) = (0.0, 0.0, 0.0);
+        let held = match self.determinate {
+            Determinate::Cantilever(node) | Determinate::SimplySupported(node, _) => node,
         };
-        let (mut w, mut slope) = (0.0, 0.0);
-        let mut cubics = Vec::with_capacity(end);
-        for panel in 0..end {
+        for &(size, action) in actions {
             match action {
-                Action::Kink(node) if node == panel => slope -= 1.0,
-                Action::Jump(node) if node == panel => w += 1.0,
-                _ => {}
+                Action::Force(node) => {
+                    nodes[node].force += size;
+                    force += size;
+                    about += size * (x[node] - x[held]);
+                }
+                Action::Couple(node) => {
+                    nodes[node].couple += size;
+                    couple += size;
+                }
+                Action::Kink(node) => nodes[node].kink += size,
+                Action::Jump(node) => nodes[node].jump += size,
+                Action::Settlement(_) => {}
             }
+        }
+        match self.determinate {
+            Determinate::Cantilever(node) => {
+                nodes[node].force -= force;
+                nodes[node].couple -= about + couple;
+            }
+            Determinate::SimplySupported(left, right) => {
+                let at_right = (about + couple) / (x[right] - x[left]);
+                nodes[right].force -= at_right;
+                nodes[left].force -= force - at_right;
+            }
+        }
+        let (mut w, mut slope, mut shear, mut moment) = (0.0, 0.0, 0.0, 0.0);
+        let mut cubics = Vec::with_capacity(end);
+        for (panel, node) in nodes[..end].iter().enumerate() {
+            w += node.jump;
+            slope -= node.kink;
+            shear -= node.force;
+            moment += node.couple;
             let h = self.mesh.width(panel);
-            let moment = |node: usize| self.determinate_moment(panel, x[node], at, force, couple);
-            let (left, right) = (moment(panel), moment(panel + 1));
             let scale = h * h / self.flexural_rigidity[panel];
-            let cubic = [w, slope * h, -0.5 * scale * left, -scale * (right - left) / 6.0];
+            let cubic = [w, slope * h, -0.5 * scale * moment, -scale * (shear * h) / 6.0];
             w += cubic[1] + cubic[2] + cubic[3];
             slope += (2.0 * cubic[2] + 3.0 * cubic[3]) / h;
+            moment += shear * h;
             cubics.push(cubic);
         }
         let mut line = Line::from_cubics(cubics);
@@ -434,22 +497,6 @@ impl Flexibility {
         line
     }
 
-    /// Bending moment at x in a panel of the determinate beam, under a force and a couple at a node and the reactions to
-    /// them: from everything to the left. A couple at a node acts on the panel to its right.
-    fn determinate_moment(&self, panel: usize, x: f64, at: usize, force: f64, couple: f64) -> f64 {
-        let nodes = self.mesh.nodes();
-        let arm = |node: usize| if x > nodes[node] { x - nodes[node] } else { 0.0 };
-        let reactions = match self.determinate {
-            Determinate::Cantilever(held) if held > panel => 0.0,
-            Determinate::Cantilever(held) => force * (x - nodes[held]) + force * (nodes[held] - nodes[at]) - couple,
-            Determinate::SimplySupported(left, right) => {
-                let at_right = (force * (nodes[at] - nodes[left]) + couple) / (nodes[right] - nodes[left]);
-                (force - at_right) * arm(left) + at_right * arm(right)
-            }
-        };
-        reactions - force * arm(at) + if at <= panel { couple } else { 0.0 }
-    }
-
     fn rigid_settlement(&self, restraint: Restraint) -> Line {
         let x = self.mesh.nodes();
         let (a, b) = match (self.determinate, restraint) {
@@ -463,6 +510,20 @@ impl Flexibility {
         };
         Line::straight(&self.mesh, a, b)
     }
+}
+
+/// What happens to the determinate beam at a node.
+#[derive(Debug, Clone, Copy, Default)]
+struct AtNode {
+    force: f64,
+    couple: f64,
+    kink: f64,
+    jump: f64,
+}
+
+/// By how much a restraint settles.
+fn settlement(actions: &[(f64, Action)], restraint: Restraint) -> f64 {
+    actions.iter().filter(|(_, action)| *action == Action::Settlement(restraint)).map(|(size, _)| size).sum()
 }
 
 /// Left to right, deflection before slope.

@@ -5,7 +5,7 @@
 
 use crate::bridge::Bridge;
 use crate::error::Error;
-use crate::flexibility::{Action, Flexibility, Restraint, Structure};
+use crate::flexibility::{Action, Actions, Flexibility, Restraint, Structure, TOGETHER};
 use crate::line::Line;
 
 /// A kind of response. Signs: deflection down, sagging moment, shear as the sum of upward forces to the left, reactions
@@ -65,51 +65,60 @@ pub fn deflection(flexibility: &Flexibility, node: usize, structure: Structure) 
 /// the sagging moment there, elsewhere the couple in the sense of positive slope, by which the bending moment is greater
 /// just right of it than just left [N m/N].
 pub fn reaction(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
-    let line = flexibility.deflected(Action::Settlement(restraint), structure);
-    match restraint {
-        // A couple in the sense of positive slope opposes the settlement, so its work changes sign; at the right end
-        // the sagging moment is the opposite couple.
-        Restraint::Slope(node) if node < flexibility.mesh().panels() => line.scaled(-1.0),
-        _ => line,
-    }
+    flexibility.deflected_by(&[of_reaction(flexibility, restraint)], structure)
 }
 
 /// Bending moment at a node [N m/N] per unit load along the bridge: just left of it, where a support holds the rotation.
 pub fn moment(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
-    if node == 0 || node == flexibility.mesh().panels() {
-        held(flexibility, Restraint::Slope(node), structure)
-    } else if structure == Structure::Actual && flexibility.hinges().contains(&node) {
-        Line::straight(flexibility.mesh(), 0.0, 0.0)
-    } else {
-        flexibility.deflected(Action::Kink(node), structure)
-    }
+    flexibility.deflected_by(&of_moment(flexibility, node, structure), structure)
 }
 
 /// Shear just left and just right of a node [N/N] per unit load along the bridge.
 pub fn shear(flexibility: &Flexibility, node: usize, structure: Structure) -> [Line; 2] {
-    let support = held(flexibility, Restraint::Deflection(node), structure);
-    let nothing = Line::straight(flexibility.mesh(), 0.0, 0.0);
-    if node == 0 {
-        // No force stands to the left of the left end.
-        [nothing, support]
-    } else if node == flexibility.mesh().panels() {
-        // No force stands to the right of the right end.
-        [support.scaled(-1.0), nothing]
+    of_shear(flexibility, node, structure).map(|actions| flexibility.deflected_by(&actions, structure))
+}
+
+/// The action whose shape is the influence line of a reaction.
+fn of_reaction(flexibility: &Flexibility, restraint: Restraint) -> (f64, Action) {
+    let sign = match restraint {
+        // A couple in the sense of positive slope opposes the settlement, so its work changes sign; at the right end
+        // the sagging moment is the opposite couple.
+        Restraint::Slope(node) if node < flexibility.mesh().panels() => -1.0,
+        _ => 1.0,
+    };
+    (sign, Action::Settlement(restraint))
+}
+
+/// The same of a bending moment: none where there is no moment.
+fn of_moment(flexibility: &Flexibility, node: usize, structure: Structure) -> Actions {
+    if node == 0 || node == flexibility.mesh().panels() {
+        held(flexibility, Restraint::Slope(node), structure)
+    } else if structure == Structure::Actual && flexibility.hinges().contains(&node) {
+        Actions::new()
     } else {
-        let left = flexibility.deflected(Action::Jump(node), structure);
-        let mut right = left.clone();
-        right.add_scaled(1.0, &support);
-        [left, right]
+        vec![(1.0, Action::Kink(node))]
     }
 }
 
-/// Reaction of a restraint if the structure has it, else zero.
-fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Line {
-    if flexibility.restraints(structure).contains(&restraint) {
-        reaction(flexibility, restraint, structure)
+/// The same of the shear on the left and on the right.
+fn of_shear(flexibility: &Flexibility, node: usize, structure: Structure) -> [Actions; 2] {
+    let support = held(flexibility, Restraint::Deflection(node), structure);
+    if node == 0 {
+        // No force stands to the left of the left end.
+        [Actions::new(), support]
+    } else if node == flexibility.mesh().panels() {
+        // No force stands to the right of the right end.
+        [support.into_iter().map(|(size, action)| (-size, action)).collect(), Actions::new()]
     } else {
-        Line::straight(flexibility.mesh(), 0.0, 0.0)
+        let jump = (1.0, Action::Jump(node));
+        [vec![jump], std::iter::once(jump).chain(support).collect()]
     }
+}
+
+/// That of the reaction of a restraint if the structure has it.
+fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -> Actions {
+    let held = flexibility.holds(restraint, structure);
+    held.then(|| of_reaction(flexibility, restraint)).into_iter().collect()
 }
 
 /// Every response looked at: deflection, moment and both shears at the sections, reactions, clamp moments.
@@ -124,7 +133,7 @@ pub struct Responses {
 }
 
 impl Responses {
-    /// At `sections` [m], which must be nodes of the flexibility's mesh; `go_on` is asked at each whether to.
+    /// At `sections` [m], which must be nodes of the flexibility's mesh; `go_on` is asked now and then whether to.
     pub fn new(
         flexibility: &Flexibility,
         bridge: &Bridge,
@@ -139,17 +148,19 @@ impl Responses {
         let (clamps, vertical): (Vec<Restraint>, Vec<Restraint>) =
             flexibility.restraints(actual).into_iter().partition(|r| matches!(r, Restraint::Slope(_)));
 
-        let mut by_quantity: [Vec<Line>; 4] = Default::default();
-        for &node in &sections {
-            let [left, right] = shear(flexibility, node, actual);
-            let lines = [deflection(flexibility, node, actual), moment(flexibility, node, actual), left, right];
-            by_quantity.iter_mut().zip(lines).for_each(|(of_quantity, line)| of_quantity.push(line));
+        let deflections = sections.iter().map(|&node| vec![(1.0, Action::Force(node))]);
+        let moments = sections.iter().map(|&node| of_moment(flexibility, node, actual));
+        let shears: Vec<[Actions; 2]> = sections.iter().map(|&node| of_shear(flexibility, node, actual)).collect();
+        let side = |side: usize| shears.iter().map(move |both| both[side].clone());
+        let reactions = vertical.iter().chain(&clamps).map(|&r| vec![of_reaction(flexibility, r)]);
+        let all: Vec<Actions> = deflections.chain(moments).chain(side(0)).chain(side(1)).chain(reactions).collect();
+        let mut lines = Vec::with_capacity(all.len());
+        for some in all.chunks(TOGETHER) {
+            lines.extend(flexibility.each_deflected(some, actual));
             if !go_on() {
                 return Err(Error::Interrupted);
             }
         }
-        let mut lines: Vec<Line> = by_quantity.into_iter().flatten().collect();
-        lines.extend(vertical.iter().chain(&clamps).map(|&r| reaction(flexibility, r, actual)));
         Ok(Responses { sections, reactions: vertical.len(), held, lines })
     }
 

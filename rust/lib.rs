@@ -23,12 +23,14 @@ pub mod given;
 pub mod interpolation;
 
 pub mod assembly;
+pub mod dense;
 pub mod vehicle;
 
 pub mod road;
 
 pub mod float_mode;
 pub mod lane;
+pub mod threads;
 
 pub mod contact;
 pub mod friction;

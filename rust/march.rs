@@ -10,8 +10,11 @@ use crate::settings::Settings;
 use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, State, Stepper, Unsettled};
 use crate::steps::{MAX_STEPS, Steps};
 
-/// Steps between two questions whether to go on.
+/// Most steps between two questions whether to go on.
 const POLL_EVERY: usize = 1024;
+
+/// Pairs of axles, which press on each other in every step, between two questions.
+const PAIRS: usize = 1 << 20;
 
 /// A crossing being marched through time.
 pub struct March<'a> {
@@ -103,6 +106,7 @@ impl<'a> March<'a> {
         }
         self.check_apart(0.0, geometry)?;
         self.record(0.0, &state, geometry);
+        let every = (PAIRS / self.history.axles.pow(2)).clamp(1, POLL_EVERY);
         for n in 1.. {
             let time = n as f64 * self.h;
             let before = front(geometry);
@@ -136,7 +140,7 @@ impl<'a> March<'a> {
             if n > self.most_steps {
                 return Err(Error::Stopped { time, position: front(geometry) });
             }
-            if n % POLL_EVERY == 0 && !go_on() {
+            if n % every == 0 && !go_on() {
                 return Err(Error::Interrupted);
             }
         }

@@ -4,7 +4,7 @@ use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
 use crate::error::Error;
-use crate::flexibility::{Action, Flexibility, Structure};
+use crate::flexibility::{Action, Actions, Flexibility, Structure};
 use crate::float_mode::Standard;
 use crate::line::Line;
 
@@ -99,14 +99,13 @@ impl Modes {
     /// The mode shapes along the whole bridge: φ(x) = ω² Σ F(x, x_m) M_m φ_m, deflected by their own inertia forces.
     pub fn lines(&self, bridge: &Bridge, flexibility: &Flexibility) -> Vec<Line> {
         let mesh = flexibility.mesh();
-        let mut lines = vec![Line::straight(mesh, 0.0, 0.0); self.len()];
-        for (i, station) in bridge.stations().iter().enumerate() {
-            let unit = flexibility.deflected(Action::Force(mesh.node_at(station.at)), Structure::Actual);
-            for (m, line) in lines.iter_mut().enumerate() {
-                line.add_scaled(self.omega[m].powi(2) * station.mass * self.shapes[(i, m)], &unit);
-            }
-        }
-        lines
+        let of_mode = |m: usize| {
+            let stations = bridge.stations().iter().enumerate();
+            let force = |i: usize, mass: f64| self.omega[m].powi(2) * mass * self.shapes[(i, m)];
+            stations.map(|(i, s)| (force(i, s.mass), Action::Force(mesh.node_at(s.at)))).collect::<Actions>()
+        };
+        let inertia: Vec<Actions> = (0..self.len()).map(of_mode).collect();
+        flexibility.each_deflected(&inertia, Structure::Actual)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Where the contacts are and what lies under them: prescribed beforehand, or following the vehicles.
 
+use crate::error::Error;
 use crate::lane::Lane;
 use crate::line::{Line, Mesh};
 use crate::newmark::Coordinate;
@@ -15,6 +16,9 @@ const PLACED: f64 = 1e-9;
 
 /// The same where forces follow the speed of the axle too, which is off by the square of the step.
 const PLACED_BY_RATES: f64 = 1e-11;
+
+/// Steps between two questions whether to go on.
+const POLL_EVERY: usize = 64;
 
 /// The included modes along the bridge, laid out for evaluation at one point after another.
 #[derive(Debug, Clone)]
@@ -218,13 +222,14 @@ pub struct Prescribed<'a> {
 
 impl<'a> Prescribed<'a> {
     /// With the contacts moving along the bridge as `motion` says at each of a number of `steps`; with `slopes` and
-    /// curvatures of the modes if the step asks for them.
+    /// curvatures of the modes if the step asks for them; `go_on` is asked now and then whether to.
     pub fn new(
         ground: Ground<'a>,
         motion: impl Fn(usize, usize) -> Coordinate<f64>,
         steps: usize,
         slopes: bool,
-    ) -> Self {
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, Error> {
         let kinds = if slopes { 3 } else { 1 };
         let (shapes, contacts) = (ground.shapes, ground.vehicle.len());
         let mut motions = Vec::new();
@@ -237,11 +242,14 @@ impl<'a> Prescribed<'a> {
                 motions.push(motion);
                 shapes.extend_at(motion.x, kinds, &mut table);
             }
+            if step % POLL_EVERY == 0 && !go_on() {
+                return Err(Error::Interrupted);
+            }
         }
         let surfaces = vec![Surface::LEVEL; contacts];
         let mut path = Prescribed { ground, contacts, step: 0, motions, kinds, table, surfaces };
         path.look_down();
-        path
+        Ok(path)
     }
 
     fn here(&self) -> &[Coordinate<f64>] {

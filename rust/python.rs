@@ -6,7 +6,7 @@ mod ensemble;
 mod road;
 mod vehicle;
 
-use std::panic::resume_unwind;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
@@ -21,6 +21,7 @@ use pyo3::types::PyBytes;
 use crate::ensemble::Progress;
 use crate::error::Error;
 use crate::float_mode::Standard;
+use crate::threads;
 
 type Vector<'py> = Bound<'py, PyArray1<f64>>;
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -66,49 +67,77 @@ fn interruptible<T: Send>(
     }
 }
 
-/// Runs `work` on a thread of its own with the interpreter released, for work that has threads that cannot ask. Every
-/// 100 ms Python handles signals, and hears how far it is if it wants to; what either raises stops the work and is raised.
-fn attended<T: Send>(
+/// Order of matrices up to which dense algebra, which cannot ask, is over in milliseconds.
+const SMALL: usize = 150;
+
+/// Runs `work` on matrices of this order, [`interruptible`] as it is or, where it could not ask often enough, [`attended`].
+fn preparing<T: Send + 'static>(
     py: Python<'_>,
-    progress: &Progress,
+    order: usize,
+    work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    if order <= SMALL {
+        return interruptible(py, work);
+    }
+    attended(py, 0, None, move |progress| work(&mut || !progress.stop.load(Ordering::Relaxed)))
+}
+
+/// Runs `work` on a thread of its own with the interpreter released. Every 100 ms Python handles signals, and hears how
+/// far it is if it wants to; what either raises stops the work and is raised. Work that does not stop at once is left to
+/// itself until it asks again: a library may be in the midst of a matrix.
+fn attended<T: Send + 'static>(
+    py: Python<'_>,
     total: usize,
     listener: Option<&Py<PyAny>>,
-    work: impl FnOnce() -> Result<T, Error> + Send,
+    work: impl FnOnce(&Progress) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
+    let shared = Arc::new(Progress::default());
+    let own = Arc::clone(&shared);
+    let progress = &*shared;
     let tell = |py: Python<'_>| match listener {
         Some(listener) => listener.call1(py, (progress.done.load(Ordering::Relaxed), total)).map(drop),
         None => Ok(()),
     };
-    let mut raised = None;
-    let result = py.detach(|| {
-        std::thread::scope(|scope| {
-            let (ended, end) = channel::<()>();
-            let worker = scope.spawn(move || {
-                // Gone when the work is over, in whatever way.
-                let _ended = ended;
-                // What is prepared here must not depend on the mode of the calling thread either.
-                let _mode = Standard::set();
-                work()
-            });
-            let mut last = Instant::now();
-            while end.recv_timeout(SIGNAL_INTERVAL / 2) == Err(RecvTimeoutError::Timeout) {
-                if raised.is_none() && last.elapsed() >= SIGNAL_INTERVAL {
+    let (ended, end) = channel();
+    let worker = threads::start(move || {
+        // What is prepared here must not depend on the mode of the calling thread either.
+        let _mode = Standard::set();
+        // Nobody listens any more to work that was left to itself.
+        let _ = ended.send(work(&own));
+    })?;
+    let (result, raised) = py.detach(move || {
+        let mut last = Instant::now();
+        let mut raised = None;
+        loop {
+            match end.recv_timeout(SIGNAL_INTERVAL / 2) {
+                Ok(result) => return (Some(result), raised),
+                Err(RecvTimeoutError::Disconnected) => return (None, raised),
+                Err(RecvTimeoutError::Timeout) if last.elapsed() < SIGNAL_INTERVAL => {}
+                Err(RecvTimeoutError::Timeout) if raised.is_some() => return (None, raised),
+                Err(RecvTimeoutError::Timeout) => {
                     // That all is done is told once, at the end.
                     let going = progress.done.load(Ordering::Relaxed) < total;
                     let look = |py: Python<'_>| py.check_signals().and_then(|()| if going { tell(py) } else { Ok(()) });
                     raised = Python::attach(look).err();
+                    progress.stop.store(raised.is_some(), Ordering::Relaxed);
                     last = Instant::now();
                 }
-                if raised.is_some() {
-                    progress.stop.store(true, Ordering::Relaxed);
-                }
             }
-            worker.join().unwrap_or_else(|panic| resume_unwind(panic))
-        })
+        }
     });
     if let Some(error) = raised {
         return Err(error);
     }
+    let Some(result) = result else {
+        // It ended without a result.
+        let panic = py.detach(|| worker.join()).err();
+        let text = panic.as_ref().and_then(|panic| {
+            let own = panic.downcast_ref::<String>().map(String::as_str);
+            own.or(panic.downcast_ref::<&str>().copied())
+        });
+        let text = text.unwrap_or("no message");
+        return Err(PyRuntimeError::new_err(format!("internal error, please report it: {text}")));
+    };
     let result = result?;
     tell(py)?;
     Ok(result)

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::assembly::Assembly;
+use crate::dense;
 use crate::lane::Lane;
 use crate::newmark::{Coordinate, Newmark};
 
@@ -53,15 +54,15 @@ impl<L: Lane> Rig<L> {
         }
         let effective = &mass + &assembly.damping * (0.5 * h) + &assembly.stiffness * (beta * h * h);
         // An assembly's mass matrix is positive definite, and the rest does not take from it.
-        let inverse = effective.try_inverse().unwrap_or_else(|| DMatrix::from_element(size, size, f64::NAN));
+        let inverse = dense::inverse(effective).unwrap_or_else(|| DMatrix::from_element(size, size, f64::NAN));
         let contact_rows = assembly.contacts.iter().map(|c| &c.row);
         let rows: Vec<&DVector<f64>> = contact_rows.chain(assembly.frictions.iter().map(|f| &f.row)).collect();
-        let receptance: Vec<DVector<f64>> = rows.iter().map(|row| &inverse * *row).collect();
+        let receptance: Vec<DVector<f64>> = rows.iter().map(|row| product(&inverse, row)).collect();
         let couplings = rows.iter().flat_map(|row| receptance.iter().map(|r| row.dot(r)));
         let by_rows = |m: &DMatrix<f64>| m.transpose().iter().copied().map(L::splat).collect::<Vec<L>>();
         let flat = |all: &[DVector<f64>]| all.iter().flat_map(|v| v.iter().copied().map(L::splat)).collect::<Vec<L>>();
         let surge_rows: Vec<DVector<f64>> = assembly.contacts.iter().map(|c| c.surge_row.clone()).collect();
-        let surge_receptance: Vec<DVector<f64>> = surge_rows.iter().map(|row| &inverse * row).collect();
+        let surge_receptance: Vec<DVector<f64>> = surge_rows.iter().map(|row| product(&inverse, row)).collect();
         let zero = L::splat(0.0);
         let linear = assembly.damping.iter().chain(assembly.stiffness.iter()).any(|&v| v != 0.0);
         Rig {
@@ -249,4 +250,13 @@ impl<L: Lane> Rig<L> {
             *guess = newmark.correct(*predicted, before.a);
         }
     }
+}
+
+/// A matrix times a vector that is mostly zero.
+fn product(matrix: &DMatrix<f64>, vector: &DVector<f64>) -> DVector<f64> {
+    let mut product = DVector::zeros(matrix.nrows());
+    for (j, &factor) in vector.iter().enumerate().filter(|(_, factor)| **factor != 0.0) {
+        product.axpy(factor, &matrix.column(j), 1.0);
+    }
+    product
 }

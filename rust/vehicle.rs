@@ -9,6 +9,13 @@ use crate::float_mode::Standard;
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;
 
+/// Most axles of all vehicles that cross together: each presses on each other through the bridge.
+pub const MAX_AXLES: usize = 500;
+
+/// Most bodies of a vehicle, and most springs and hinges between them.
+const MAX_BODIES: usize = 500;
+const MAX_COUPLINGS: usize = 4 * MAX_BODIES;
+
 /// An axle: a tyre below a suspension, with an unsprung mass between them or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axle {
@@ -135,6 +142,16 @@ impl Vehicle {
         let _mode = Standard::set();
         if bodies.is_empty() {
             return Err(Error::input("bodies", "[]", "a vehicle needs at least one body"));
+        }
+        let all = |count: fn(&Body) -> usize| bodies.iter().map(count).sum::<usize>();
+        let axles = all(|body| body.axles.len());
+        let couplings = all(|body| body.couplings.len());
+        let parts = [("bodies", bodies.len(), MAX_BODIES), ("couplings", couplings, MAX_COUPLINGS)];
+        for (what, count, most) in [("axles", axles, MAX_AXLES)].into_iter().chain(parts) {
+            if count > most {
+                let allowed = format!("at most {most} of one vehicle; let several follow each other");
+                return Err(Error::input(what, format!("{count} {what}"), allowed));
+            }
         }
         for b in 0..bodies.len() {
             check_body(&bodies, b)?;

@@ -112,7 +112,8 @@ def cross(
         If a value is not allowed, naming it and what is; if the step is beyond the stability limit,
         naming the limit; if the road does not cover the path; if vehicles of a lane overlap.
     RuntimeError
-        If the numerics fail, or under constant traction a vehicle comes to rest.
+        If the numerics fail, if under constant traction a vehicle comes to rest, or if the system
+        does not start the thread that long work needs.
 
     Warns
     -----

@@ -126,7 +126,8 @@ def ensemble(
         Impact factors are not given where the static value is at most this fraction of the largest
         among the sections.
     threads : int, optional
-        Threads; by default as many as the processor has. Results do not depend on them.
+        Threads at most; by default as many as the processor has. More than four to a processor are
+        not started, nor more than the system allows. Results do not depend on them.
     progress : callable or bool, optional
         Called with the number of samples done and that of all, at most ten times a second and at
         the end; what it raises ends the computation. Or True for a line on standard error: over
@@ -142,7 +143,8 @@ def ensemble(
     ValueError
         If a value is not allowed, naming it and what is.
     RuntimeError
-        If the numerics of the bridge fail. Samples that fail are among `Ensemble.failures`.
+        If the numerics of the bridge fail, or if the system starts no thread. Samples that fail are
+        among `Ensemble.failures`.
 
     Warns
     -----

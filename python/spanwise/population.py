@@ -236,7 +236,7 @@ class Ensemble:
     isa : str
         Instruction set used.
     threads : int
-        Threads used.
+        Threads at most.
     elapsed : float
         Time that it took [s].
     shares_geometry : bool

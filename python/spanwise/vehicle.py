@@ -191,8 +191,8 @@ class Vehicle(Wheels):
     Raises
     ------
     ValueError
-        If a value is not allowed, if an axle would carry no load, or if nothing resists some
-        motion, naming what is wrong and what is allowed.
+        If a value is not allowed, if an axle would carry no load, if nothing resists some motion,
+        or if there are more than 500 axles or bodies, naming what is wrong and what is allowed.
 
     Notes
     -----

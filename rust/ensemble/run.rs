@@ -16,6 +16,7 @@ use super::{March, Study, alone};
 use crate::error::Error;
 use crate::float_mode::Standard;
 use crate::recovery::Place;
+use crate::threads;
 
 /// Most samples that a worker takes at a time unless told otherwise.
 pub const BLOCK: usize = 256;
@@ -25,7 +26,7 @@ pub const BLOCK: usize = 256;
 pub struct Workers {
     /// The instruction set.
     pub isa: Isa,
-    /// Threads.
+    /// Threads at most: no more than are of use are started.
     pub threads: usize,
     /// Samples that a worker takes at a time; without it [`BLOCK`], or fewer where there is not much to share out.
     pub chunk: Option<usize>,
@@ -98,7 +99,8 @@ impl Study {
         };
         let failures = Mutex::new(Vec::new());
         // A few portions for every thread, in whole groups of lanes.
-        let share = count.div_ceil(4 * workers.threads).next_multiple_of(SAMPLES).max(SAMPLES);
+        let working = threads::of_use(workers.threads, count);
+        let share = count.div_ceil(4 * working).next_multiple_of(SAMPLES).max(SAMPLES);
         let portions = portions(&distinct, &mut results, workers.chunk.unwrap_or(share.min(BLOCK)));
         let work = || {
             portions.into_par_iter().try_for_each(|portion| {
@@ -133,14 +135,7 @@ impl Study {
                 if go_on() { Ok(()) } else { Err(Error::Interrupted) }
             })
         };
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(workers.threads.min(count.max(1)))
-            .thread_name(|i| format!("spanwise-{i}"))
-            // For as long as the thread lives.
-            .start_handler(|_| std::mem::forget(Standard::set()))
-            .build()
-            .map_err(|e| Error::input("threads", workers.threads, e.to_string()))?;
-        pool.install(work)?;
+        threads::pool(working)?.install(work)?;
         results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
         results.failures.sort_by_key(|failure| failure.sample);
         if marches.len() > 1 {

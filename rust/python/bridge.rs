@@ -1,18 +1,18 @@
 //! The bridge for Python, with what was last worked out for it.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use faer::Mat;
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use super::{Matrix, Vector, matrix, rows};
+use super::{Matrix, Vector, matrix, preparing, rows};
 use crate::along::Along;
 use crate::analysis::Analysis;
 use crate::bridge::{Bridge, COINCIDENT, Fixity, Layout, Stations, Support};
 use crate::damping::Damping;
 use crate::error::Error;
-use crate::flexibility::{Flexibility, Restraint, Structure};
+use crate::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
 use crate::given::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};
 use crate::influence::{self, Quantity};
 use crate::line::{Line, Mesh};
@@ -63,8 +63,16 @@ pub struct Asked {
 }
 
 impl Solved {
-    fn new(source: Source) -> Self {
-        Solved { source, modes: Mutex::new(None), analysis: Mutex::new(None) }
+    fn new(source: Source) -> Arc<Self> {
+        Arc::new(Solved { source, modes: Mutex::new(None), analysis: Mutex::new(None) })
+    }
+
+    /// Order of the largest matrix that its own masses, supports and hinges lead to.
+    pub fn order(&self) -> usize {
+        match &self.source {
+            Source::Described(bridge) => order(bridge),
+            Source::Given(given) => given.mode_count().max(given.sections().len()),
+        }
     }
 
     /// The bridge, if it was described; `what` is asked of it.
@@ -80,12 +88,12 @@ impl Solved {
     }
 
     pub fn analysis(&self, asked: Asked, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Analysis>, Error> {
-        let mut kept = self.analysis.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((for_what, analysis)) = kept.as_ref()
+        if let Some((for_what, analysis)) = held(&self.analysis).as_ref()
             && *for_what == asked
         {
             return Ok(Arc::clone(analysis));
         }
+        // Nothing is held meanwhile: work that was left to itself must not keep others waiting.
         let sections = asked.sections.as_deref();
         let analysis = Arc::new(match &self.source {
             Source::Described(bridge) => {
@@ -94,21 +102,29 @@ impl Solved {
             }
             Source::Given(given) => Analysis::of_given(given, asked.modes, &asked.damping, sections, asked.recovery)?,
         });
-        *kept = Some((asked, Arc::clone(&analysis)));
+        *held(&self.analysis) = Some((asked, Arc::clone(&analysis)));
         Ok(analysis)
     }
 
     fn modes(&self, bridge: &Bridge, count: usize) -> Result<Modes, Error> {
-        let mut kept = self.modes.lock().unwrap_or_else(PoisonError::into_inner);
-        match kept.as_ref() {
-            Some(modes) if count > 0 && modes.len() >= count => Ok(modes.truncated(count)),
-            _ => {
-                let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, count)?;
-                *kept = Some(modes.clone());
-                Ok(modes)
-            }
+        match held(&self.modes).as_ref() {
+            Some(modes) if count > 0 && modes.len() >= count => return Ok(modes.truncated(count)),
+            _ => {}
         }
+        let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, count)?;
+        *held(&self.modes) = Some(modes.clone());
+        Ok(modes)
     }
+}
+
+/// What is kept, for a moment.
+fn held<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Order of the largest matrix that a bridge leads to.
+fn order(bridge: &Bridge) -> usize {
+    bridge.stations().len().max(bridge.supports().len() + bridge.hinges().len())
 }
 
 /// Positions and springs of supports; the names pinned, clamped and free are Python's.
@@ -183,7 +199,7 @@ fn on_the_beam(key: &str, at: f64, length: f64) -> Result<(), Error> {
 
 /// A beam bridge, its mass lumped at stations.
 #[pyclass(name = "Bridge", frozen, module = "spanwise._core")]
-pub struct PyBridge(pub Solved);
+pub struct PyBridge(pub Arc<Solved>);
 
 #[pymethods]
 impl PyBridge {
@@ -210,13 +226,14 @@ impl PyBridge {
             stations: stations.map_or(Stations::PerSpan(stations_per_span), Stations::At),
             point_masses,
         };
-        let bridge = py.detach(|| {
+        let order = layout.supports.len() + layout.hinges.len();
+        let bridge = preparing(py, order, move |_| {
             let bridge = Bridge::from_layout(layout)?;
             if !bridge.hinges().is_empty() {
                 // A mechanism shows in the flexibility.
                 Flexibility::new(&bridge, &[])?;
             }
-            Ok::<_, Error>(bridge)
+            Ok(bridge)
         })?;
         Ok(PyBridge(Solved::new(Source::Described(Box::new(bridge)))))
     }
@@ -247,7 +264,8 @@ impl PyBridge {
         let (flexibility, slopes) = (mat(flexibility), slopes.map(mat));
         let supports = supports_of(supports);
         let data = ByFlexibility { length, supports, stations, masses, redundants, path, flexibility, slopes };
-        let given = py.detach(|| Given::by_flexibility(&data))?;
+        let order = data.flexibility.nrows().max(data.flexibility.ncols());
+        let given = preparing(py, order, move |_| Given::by_flexibility(&data))?;
         Ok(PyBridge(Solved::new(Source::Given(Box::new(given)))))
     }
 
@@ -270,7 +288,8 @@ impl PyBridge {
         let (shapes, slopes) = (two_sided(shapes), slopes.map(two_sided));
         let supports = supports_of(supports);
         let data = ByModes { path, frequencies, shapes, slopes, sections, supports, influence, masses };
-        let given = py.detach(|| Given::by_modes(&data))?;
+        let order = data.path.len().max(data.sections.len());
+        let given = preparing(py, order, move |_| Given::by_modes(&data))?;
         Ok(PyBridge(Solved::new(Source::Given(Box::new(given)))))
     }
 
@@ -386,15 +405,16 @@ impl PyBridge {
         left: bool,
     ) -> PyResult<(Vector<'py>, Matrix<'py>, Option<Matrix<'py>>)> {
         let x = x.map(|x| x.as_array().to_vec());
-        let (modes, along) = py.detach(|| match &self.0.source {
+        let solved = Arc::clone(&self.0);
+        let (modes, along) = preparing(py, self.0.order(), move |_| match &solved.source {
             Source::Described(bridge) => {
-                let modes = self.0.modes(bridge, count)?;
+                let modes = solved.modes(bridge, count)?;
                 let along = x.map(|x| {
                     let flexibility = Flexibility::new(bridge, &[])?;
                     let lines = modes.lines(bridge, &flexibility);
                     Ok::<_, Error>(read(flexibility.mesh(), &lines, &x, derivative, left))
                 });
-                Ok::<_, Error>((modes, along.transpose()?))
+                Ok((modes, along.transpose()?))
             }
             Source::Given(given) => {
                 let (modes, lines) = given.modes(count)?;
@@ -409,8 +429,9 @@ impl PyBridge {
     /// Positions of the reference stations and the flexibility matrix there: F* or F.
     fn flexibility<'py>(&self, py: Python<'py>, name: &str) -> PyResult<(Vector<'py>, Matrix<'py>)> {
         let structure = structure(name)?;
-        let bridge = self.0.described("flexibility")?;
-        let (x, f) = py.detach(|| {
+        let solved = Arc::clone(&self.0);
+        let (x, f) = preparing(py, self.0.order(), move |_| {
+            let bridge = solved.described("flexibility")?;
             let flexibility = Flexibility::new(bridge, &[])?;
             let mut nodes = flexibility.reference_nodes(bridge);
             if structure == Structure::Actual {
@@ -418,7 +439,7 @@ impl PyBridge {
                 nodes = stations.map(|s| flexibility.mesh().node_at(s.at)).collect();
             }
             let x: Vec<f64> = nodes.iter().map(|&node| flexibility.mesh().nodes()[node]).collect();
-            Ok::<_, Error>((x, flexibility.matrix(&nodes, &nodes, structure)))
+            Ok((x, flexibility.matrix(&nodes, &nodes, structure)))
         })?;
         Ok((x.into_pyarray(py), matrix(py, &f)))
     }
@@ -435,42 +456,49 @@ impl PyBridge {
         left: bool,
     ) -> PyResult<Matrix<'py>> {
         let structure = structure(name)?;
-        let bridge = self.0.described("deflections")?;
-        for (i, &at) in loads.iter().enumerate() {
-            on_the_beam(&format!("loads[{i}]"), at, bridge.length())?;
-        }
         let x = x.as_array().to_vec();
-        let values = py.detach(|| {
+        let (solved, count) = (Arc::clone(&self.0), loads.len());
+        let values = preparing(py, self.0.order().max(count), move |_| {
+            let bridge = solved.described("deflections")?;
+            for (i, &at) in loads.iter().enumerate() {
+                on_the_beam(&format!("loads[{i}]"), at, bridge.length())?;
+            }
             let flexibility = Flexibility::new(bridge, &loads)?;
             let mesh = flexibility.mesh();
-            let lines: Vec<Line> =
-                loads.iter().map(|&at| influence::deflection(&flexibility, mesh.node_at(at), structure)).collect();
-            Ok::<_, Error>(read(mesh, &lines, &x, derivative, left))
+            let forces: Vec<Actions> = loads.iter().map(|&at| vec![(1.0, Action::Force(mesh.node_at(at)))]).collect();
+            Ok(read(mesh, &flexibility.each_deflected(&forces, structure), &x, derivative, left))
         })?;
-        rows(py, values, loads.len())
+        rows(py, values, count)
     }
 
     /// K^R, the stiffness of the redundant supports.
     fn redundant_stiffness<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let flexibility = Flexibility::new(self.0.described("redundant_stiffness")?, &[])?;
-        Ok(matrix(py, &flexibility.redundant_stiffness()))
+        let solved = Arc::clone(&self.0);
+        let stiffness = preparing(py, self.0.order(), move |_| {
+            Ok(Flexibility::new(solved.described("redundant_stiffness")?, &[])?.redundant_stiffness())
+        })?;
+        Ok(matrix(py, &stiffness))
     }
 
     /// Restraints of the basic bridge: position, kind, and its reaction per unit load at each reference station.
     fn outer_reactions<'py>(&self, py: Python<'py>) -> PyResult<Vec<(f64, &'static str, Vector<'py>)>> {
-        let bridge = self.0.described("outer_reactions")?;
-        let flexibility = Flexibility::new(bridge, &[])?;
-        let nodes = flexibility.reference_nodes(bridge);
-        let each = flexibility.outer_restraints().into_iter().map(|restraint| {
-            let line = influence::reaction(&flexibility, restraint, Structure::Basic);
-            let values: Vec<f64> = nodes.iter().map(|&node| line.at_node(node)).collect();
-            let kind = match restraint {
-                Restraint::Deflection(_) => "force",
-                Restraint::Slope(_) => "moment",
-            };
-            (flexibility.mesh().nodes()[restraint.node()], kind, values.into_pyarray(py))
-        });
-        Ok(each.collect())
+        let solved = Arc::clone(&self.0);
+        let all = preparing(py, self.0.order(), move |_| {
+            let bridge = solved.described("outer_reactions")?;
+            let flexibility = Flexibility::new(bridge, &[])?;
+            let nodes = flexibility.reference_nodes(bridge);
+            let each = flexibility.outer_restraints().into_iter().map(|restraint| {
+                let line = influence::reaction(&flexibility, restraint, Structure::Basic);
+                let values: Vec<f64> = nodes.iter().map(|&node| line.at_node(node)).collect();
+                let kind = match restraint {
+                    Restraint::Deflection(_) => "force",
+                    Restraint::Slope(_) => "moment",
+                };
+                (flexibility.mesh().nodes()[restraint.node()], kind, values)
+            });
+            Ok(each.collect::<Vec<_>>())
+        })?;
+        Ok(all.into_iter().map(|(at, kind, values)| (at, kind, values.into_pyarray(py))).collect())
     }
 
     /// State after the supports have settled: deflection, moment, shear left and right, reactions, clamp moments.
@@ -480,11 +508,15 @@ impl PyBridge {
         settlements: Vec<f64>,
         sections: Vec<f64>,
     ) -> PyResult<[Vector<'py>; 6]> {
-        let bridge = self.0.described("settlement")?;
-        for (i, &at) in sections.iter().enumerate() {
-            on_the_beam(&format!("sections[{i}]"), at, bridge.length())?;
-        }
-        let settled = py.detach(|| Settled::new(bridge, &settlements, &sections))?;
+        let solved = Arc::clone(&self.0);
+        let order = self.0.order().max(sections.len());
+        let settled = preparing(py, order, move |_| {
+            let bridge = solved.described("settlement")?;
+            for (i, &at) in sections.iter().enumerate() {
+                on_the_beam(&format!("sections[{i}]"), at, bridge.length())?;
+            }
+            Settled::new(bridge, &settlements, &sections)
+        })?;
         let side = |side: usize| settled.shear.iter().map(|shear| shear[side]).collect::<Vec<f64>>();
         let (left, right) = (side(0), side(1));
         Ok([settled.deflection, settled.moment, left, right, settled.reactions, settled.clamp_moments]
@@ -507,48 +539,43 @@ impl PyBridge {
         let structure = structure(name)?;
         let x = x.as_array().to_vec();
         on_the_beam("at", at, self.length())?;
-        let values = match &self.0.source {
-            Source::Described(bridge) => described_line(bridge, quantity, at, structure, |mesh, line| {
-                read(mesh, std::slice::from_ref(line), &x, derivative, left)
-            })?,
+        let (solved, quantity) = (Arc::clone(&self.0), quantity.to_string());
+        let values = preparing(py, self.0.order(), move |_| match &solved.source {
+            Source::Described(bridge) => {
+                let flexibility = Flexibility::new(bridge, &[at])?;
+                let line = described_line(&flexibility, &quantity, at, structure)?;
+                Ok(read(flexibility.mesh(), &[line], &x, derivative, left))
+            }
             Source::Given(given) => {
                 if structure == Structure::Basic {
-                    self.0.described("influence_line of the basic bridge")?;
+                    solved.described("influence_line of the basic bridge")?;
                 }
-                let line = given.line(quantity, at)?;
-                read(given.mesh(), std::slice::from_ref(line), &x, derivative, left)
+                let line = given.line(&quantity, at)?;
+                Ok(read(given.mesh(), std::slice::from_ref(line), &x, derivative, left))
             }
-        };
+        })?;
         Ok(values.into_pyarray(py))
     }
 }
 
-/// What is wanted of the influence line of a response of a bridge.
-fn described_line<T>(
-    bridge: &Bridge,
-    quantity: &str,
-    at: f64,
-    structure: Structure,
-    wanted: impl FnOnce(&Mesh, &Line) -> T,
-) -> Result<T, Error> {
-    let flexibility = Flexibility::new(bridge, &[at])?;
+/// The influence line of a response of a bridge that was described.
+fn described_line(flexibility: &Flexibility, quantity: &str, at: f64, structure: Structure) -> Result<Line, Error> {
     let node = flexibility.mesh().node_at(at);
-    let reaction = |restraint: Restraint, what: &str| match flexibility.restraints(structure).contains(&restraint) {
-        true => Ok(influence::reaction(&flexibility, restraint, structure)),
+    let reaction = |restraint: Restraint, what: &str| match flexibility.holds(restraint, structure) {
+        true => Ok(influence::reaction(flexibility, restraint, structure)),
         false => Err(Error::input("at", format!("{at} m"), format!("must be the position of {what}"))),
     };
-    let line = match quantity {
-        "deflection" => influence::deflection(&flexibility, node, structure),
-        "slope" => influence::slope(&flexibility, node, structure),
-        "moment" => influence::moment(&flexibility, node, structure),
-        "shear-left" => influence::shear(&flexibility, node, structure)[0].clone(),
-        "shear-right" => influence::shear(&flexibility, node, structure)[1].clone(),
-        "reaction" => reaction(Restraint::Deflection(node), "a support of this structure")?,
-        "clamp-moment" => reaction(Restraint::Slope(node), "a support of this structure that holds the rotation")?,
+    match quantity {
+        "deflection" => Ok(influence::deflection(flexibility, node, structure)),
+        "slope" => Ok(influence::slope(flexibility, node, structure)),
+        "moment" => Ok(influence::moment(flexibility, node, structure)),
+        "shear-left" => Ok(influence::shear(flexibility, node, structure)[0].clone()),
+        "shear-right" => Ok(influence::shear(flexibility, node, structure)[1].clone()),
+        "reaction" => reaction(Restraint::Deflection(node), "a support of this structure"),
+        "clamp-moment" => reaction(Restraint::Slope(node), "a support of this structure that holds the rotation"),
         _ => {
             let allowed = "must be deflection, slope, moment, shear-left, shear-right, reaction or clamp-moment";
-            return Err(Error::input("quantity", format!("\"{quantity}\""), allowed));
+            Err(Error::input("quantity", format!("\"{quantity}\""), allowed))
         }
-    };
-    Ok(wanted(flexibility.mesh(), &line))
+    }
 }

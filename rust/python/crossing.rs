@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use super::bridge::{Asked, PyBridge};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
-use super::{Matrix, Vector, interruptible, packed, rows};
+use super::{Matrix, Vector, interruptible, packed, preparing, rows};
 use crate::analysis::{self, Analysis};
 use crate::course::{Braking, Direction, Drive, Passage};
 use crate::damping::Damping;
@@ -179,23 +179,34 @@ impl Crossing {
     /// Heave and pitch of every body of a vehicle, the displacement of the mass of every axle, and the travel, each with
     /// its first and second derivative, at every instant.
     fn motion<'py>(&self, py: Python<'py>, vehicle: usize) -> PyResult<Matrix<'py>> {
-        let (history, assembly) = (&self.outcome.history, self.vehicles[vehicle].assembly());
+        let history = &self.outcome.history;
+        let (Some(mover), Some(columns)) = (self.vehicles.get(vehicle), history.vehicles.get(vehicle)) else {
+            let allowed = format!("must be below {}, the number of vehicles", self.vehicles.len());
+            return Err(Error::input("vehicle", vehicle, allowed).into());
+        };
+        let assembly = mover.assembly();
         let mut lines: Vec<Option<&DVector<f64>>> = assembly.bodies.iter().flatten().map(Some).collect();
         lines.extend(assembly.hops.iter().map(Option::as_ref));
-        let mut values = Vec::with_capacity(history.len() * 3 * (lines.len() + 1));
-        let columns = history.vehicles[vehicle].motion.clone();
-        for row in history.motion.chunks_exact(history.motion_width()) {
-            let own = &row[columns.clone()];
-            for line in &lines {
-                for derivative in 0..3 {
-                    let coordinates = own.iter().skip(derivative).step_by(3);
-                    let sum = line.map_or(0.0, |line| line.iter().zip(coordinates).map(|(b, q)| b * q).sum());
-                    values.push(sum);
+        let width = 3 * (lines.len() + 1);
+        let values = interruptible(py, |go_on| {
+            let mut values = Vec::with_capacity(history.len() * width);
+            for row in history.motion.chunks_exact(history.motion_width()) {
+                let own = &row[columns.motion.clone()];
+                for line in &lines {
+                    for derivative in 0..3 {
+                        let coordinates = own.iter().skip(derivative).step_by(3);
+                        let sum = line.map_or(0.0, |line| line.iter().zip(coordinates).map(|(b, q)| b * q).sum());
+                        values.push(sum);
+                    }
+                }
+                values.extend(&own[own.len() - 3..]);
+                if !go_on() {
+                    return Err(Error::Interrupted);
                 }
             }
-            values.extend(&own[own.len() - 3..]);
-        }
-        rows(py, values, 3 * (lines.len() + 1))
+            Ok(values)
+        })?;
+        rows(py, values, width)
     }
 
     /// Extremes of a quantity: columns value, time, front-axle position and partner for each of the dynamic largest,
@@ -343,10 +354,14 @@ pub fn cross<'py>(
     let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
     // Every passage says its own speed or brings it with its drive.
     let settings = Settings { beta, step, approach, ramp, tail, gravity, lift_off, ..Settings::at_speed(f64::NAN) };
-    let (analysis, outcome) = interruptible(py, |go_on| {
-        let analysis = bridge.0.analysis(asked, go_on)?;
+    let solved = Arc::clone(&bridge.0);
+    let assemblies = passages.iter().map(|passage| passage.vehicle.assembly());
+    let of_vehicles: usize = assemblies.map(|assembly| assembly.coordinates.len() + assembly.contacts.len()).sum();
+    let order = solved.order().max(asked.sections.as_ref().map_or(0, Vec::len)).max(of_vehicles);
+    let (analysis, outcome, passages) = preparing(py, order, move |go_on| {
+        let analysis = solved.analysis(asked, go_on)?;
         let outcome = analysis.cross_all(&passages, &settings, go_on)?;
-        Ok((analysis, outcome))
+        Ok((analysis, outcome, passages))
     })?;
     let vehicles = passages.into_iter().map(|passage| passage.vehicle).collect();
     Ok(Crossing { analysis, outcome, vehicles })

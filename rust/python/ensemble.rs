@@ -19,7 +19,7 @@ use crate::course::Passage;
 use crate::ensemble::clock;
 use crate::ensemble::record::{Column, Layout, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
-use crate::ensemble::{Progress, Run, Study, Workers, alone};
+use crate::ensemble::{Run, Study, Workers, alone};
 use crate::error::Error;
 use crate::influence::Quantity;
 use crate::road::patch::Patch;
@@ -376,17 +376,17 @@ pub fn ensemble<'py>(
         ..Settings::at_speed(f64::NAN)
     };
     let started = Instant::now();
-    let told = Progress::default();
-    let (study, mut run) = attended(py, &told, count, progress.as_ref(), || {
-        let go_on = || !told.stop.load(Ordering::Relaxed);
+    let solved = Arc::clone(&bridge.0);
+    let (study, quantities, mut run) = attended(py, count, progress.as_ref(), move |told| {
+        let mut go_on = || !told.stop.load(Ordering::Relaxed);
         let own = own_road.map(|(roughness, waviness, band, patch, period, seed)| {
             let spectrum = Spectrum::new(roughness, waviness, band)?;
             Ok::<_, Error>((Arc::new(Synthesis::new(spectrum, Patch::new(patch)?, Some(period))?), seed))
         });
-        let analysis = bridge.0.analysis(asked, &mut || go_on())?;
+        let analysis = solved.analysis(asked, &mut go_on)?;
         let study = Study::new(analysis, kinds, settings, own.transpose()?, advance, &quantities)?;
-        let run = study.run(&samples, &workers, &told)?;
-        Ok((study, run))
+        let run = study.run(&samples, &workers, told)?;
+        Ok((study, quantities, run))
     })?;
     let elapsed = started.elapsed().as_secs_f64();
     let (hash, layout) = (run.results.hash(), run.results.layout);

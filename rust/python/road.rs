@@ -100,11 +100,18 @@ impl PyRoad {
     }
 
     /// Elevation, slope and curvature.
-    fn at<'py>(&self, py: Python<'py>, x: PyReadonlyArray1<'_, f64>) -> (Vector<'py>, Vector<'py>, Vector<'py>) {
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(Vector<'py>, Vector<'py>, Vector<'py>)> {
         let x = x.as_array().to_vec();
-        let points: Vec<road::Point> = py.detach(|| x.iter().map(|&x| self.0.at(x)).collect());
+        let points = interruptible(py, |go_on| {
+            let point = |&x: &f64| if go_on() { Ok(self.0.at(x)) } else { Err(Error::Interrupted) };
+            x.iter().map(point).collect::<Result<Vec<road::Point>, Error>>()
+        })?;
         let column = |of: fn(&road::Point) -> f64| points.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
-        (column(|p| p.elevation), column(|p| p.slope), column(|p| p.curvature))
+        Ok((column(|p| p.elevation), column(|p| p.slope), column(|p| p.curvature)))
     }
 
     /// The same averaged over another length than its contact patches.

@@ -3,7 +3,7 @@
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
-use super::Vector;
+use super::{Vector, preparing};
 use crate::assembly::{BuildUp, Friction};
 use crate::vehicle::{self, Axle, Body, Coupling, Suspension};
 
@@ -29,8 +29,10 @@ pub struct PyVehicle(pub vehicle::Vehicle);
 #[pymethods]
 impl PyVehicle {
     #[new]
-    fn new(bodies: Vec<PyBody>) -> PyResult<Self> {
-        Ok(PyVehicle(vehicle::Vehicle::of_bodies(bodies.into_iter().map(body).collect())?))
+    fn new(py: Python<'_>, bodies: Vec<PyBody>) -> PyResult<Self> {
+        let bodies: Vec<Body> = bodies.into_iter().map(body).collect();
+        let order = bodies.iter().map(|body| 2 + body.axles.len() + body.couplings.len()).sum();
+        Ok(PyVehicle(preparing(py, order, move |_| vehicle::Vehicle::of_bodies(bodies))?))
     }
 
     #[staticmethod]
@@ -73,9 +75,10 @@ impl PyVehicle {
         Ok(self.0.static_loads(gravity).into_pyarray(py))
     }
 
-    fn frequencies<'py>(&self, py: Python<'py>, locked: bool) -> Vector<'py> {
+    fn frequencies<'py>(&self, py: Python<'py>, locked: bool) -> PyResult<Vector<'py>> {
         let suspension = if locked { Suspension::Locked } else { Suspension::Sliding };
-        self.0.frequencies(suspension).into_pyarray(py)
+        let (vehicle, order) = (self.0.clone(), self.0.assembly().coordinates.len());
+        Ok(preparing(py, order, move |_| Ok(vehicle.frequencies(suspension)))?.into_pyarray(py))
     }
 }
 

@@ -1,0 +1,175 @@
+"""What takes long before anything moves ends when it is interrupted, and is bounded."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+import spanwise as sw
+
+#: Most time from the signal to its exception [s]; a tenth of it where nothing else is done.
+PATIENCE = 2.0
+
+#: Long preparations: what is made once, and what is repeated until the signal comes.
+LONG = {
+    "redundant supports": (
+        "",
+        "sw.Bridge(spans=[20.0] * 1500, EI=3e9, mass=9e3, stations_per_span=1).modes(2)",
+    ),
+    "hinges": (
+        "",
+        "sw.Bridge(spans=[20.0] * 1500, hinges=[20.0 * i for i in range(1, 1500)], EI=3e9,"
+        " mass=9e3, stations_per_span=1)",
+    ),
+    "stations": (
+        "",
+        "sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1999).modes(2)",
+    ),
+    "sections": (
+        "b = sw.Bridge(spans=[20.0] * 300, EI=3e9, mass=9e3, stations_per_span=1)\n"
+        "b.modes(2)",
+        "sw.cross(b, TRUCK, speed=30.0, damping=0.02, modes=2,"
+        " sections=np.linspace(0.0, 5999.0 + np.random.rand(), 1500))",
+    ),
+    "an influence line": (
+        "b = sw.Bridge(spans=[20.0] * 1500, EI=3e9, mass=9e3, stations_per_span=1)",
+        "b.influence_line('moment', 100.0, [1.0, 2.0])",
+    ),
+    "a damping matrix": (
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1200)\n"
+        "b.modes(2)",
+        "sw.cross(b, TRUCK, speed=30.0, modes=2, step=0.01, beta=0.25,"
+        " damping=np.eye(1200) * (1.0 + np.random.rand()))",
+    ),
+    "given flexibility": (
+        "x = np.linspace(0.0, 20.0, 1502)[1:-1]\n"
+        "a, c = np.minimum.outer(x, x), np.maximum.outer(x, x)\n"
+        "f = a * (20.0 - c) * (400.0 - (20.0 - c) ** 2 - a**2) / (6.0 * 3e9 * 20.0)",
+        "sw.Bridge.from_flexibility(stations=x, flexibility=f, masses=np.full(1500, 9.0),"
+        " supports=[(0.0, 'pinned'), (20.0, 'pinned')], length=20.0).modes(2)",
+    ),
+    "a long train": (TRAIN := """
+def axle(x):
+    return sw.Axle(position=x, mass=1500.0, tyre_stiffness=1e9, suspension_stiffness=2e6)
+
+bodies = []
+for wagon in range(100):
+    k = len(bodies)
+    ahead = [sw.Spring(to=k - 3, at=-13.0, own=13.0, stiffness=1e5)] if k else []
+    bodies.append(sw.Body(mass=4e4, pitch_inertia=2e6, springs=ahead))
+    for at in (8.0, -8.0):
+        secondary = [sw.Spring(to=k, at=at, own=0.0, stiffness=1e6, damping=3e4)]
+        axles = [axle(1.2), axle(-1.2)]
+        bodies.append(sw.Body(mass=3e3, pitch_inertia=3e3, axles=axles, springs=secondary))
+""", "sw.Vehicle(bodies=bodies)"),
+    "its crossing": (
+        TRAIN + "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
+        "train = sw.Vehicle(bodies=bodies)",
+        "sw.cross(b, train, speed=60.0, damping=0.02, modes=1, step=0.05, beta=0.25)",
+    ),
+    "many masses": (
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
+        "train = sw.MovingMasses(masses=[100.0] * 500, spacings=[2.0] * 499)",
+        "sw.cross(b, train, speed=60.0, damping=0.02, modes=1)",
+    ),
+    "static loads": (
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
+        "found = sw.ensemble(b, TRUCK, samples=60000, speed=20.0, damping=0.02,"
+        " factors={'body_mass': np.linspace(0.9, 1.1, 60000)}, quantities=['deflection'])",
+        "found._core.static_loads()",
+    ),
+    "many threads": (
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)",
+        "sw.ensemble(b, TRUCK, samples=50000, speed=20.0, damping=0.02, threads=2048)",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+@pytest.mark.parametrize("what", LONG)
+def test_what_is_prepared_ends_when_it_is_interrupted(what: str) -> None:
+    before, again = LONG[what]
+    # In a process of its own, whose main thread takes the signal.
+    program = f"""\
+import os, signal, threading, time
+import numpy as np
+import spanwise as sw
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+TRUCK = sw.vehicles.kishan_1973()
+sent = []
+
+def send():
+    sent.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+
+{before}
+threading.Timer(0.3, send).start()
+try:
+    while True:
+        {again}
+except KeyboardInterrupt:
+    print(time.perf_counter() - sent[0])
+"""
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.stderr == ""
+    assert done.returncode == 0
+    assert float(done.stdout) < PATIENCE
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
+def test_a_bridge_serves_on_after_an_interrupt() -> None:
+    program = """
+        import os, signal, threading
+        import spanwise as sw
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        bridge = sw.Bridge(spans=[20.0] * 1000, EI=3e9, mass=9e3, stations_per_span=1)
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        try:
+            while True:
+                bridge.flexibility("actual")
+        except KeyboardInterrupt:
+            pass
+        again = sw.Bridge(spans=[20.0] * 1000, EI=3e9, mass=9e3, stations_per_span=1)
+        assert (bridge.modes(2).frequencies == again.modes(2).frequencies).all()
+    """
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.stderr == ""
+
+
+def test_what_nobody_has_is_refused_before_it_takes_an_hour() -> None:
+    axles = [
+        sw.Axle(position=-float(i), mass=10.0, tyre_stiffness=1e6, suspension_stiffness=1e6)
+        for i in range(3000)
+    ]
+    with pytest.raises(ValueError, match=r"axles = 3000 axles: at most 500 of one vehicle"):
+        sw.Vehicle(mass=1e5, pitch_inertia=1e6, axles=axles)
+    many = [sw.Body(mass=1.0)] * 501
+    with pytest.raises(ValueError, match=r"bodies = 501 bodies: at most 500 of one vehicle"):
+        sw.Vehicle(bodies=many)
+    springs = [sw.Spring(to=0, at=0.0, own=0.0, stiffness=1.0)] * 2001
+    pair = [sw.Body(mass=1.0), sw.Body(mass=1.0, springs=springs)]
+    with pytest.raises(ValueError, match=r"couplings = 2001 couplings: at most 2000"):
+        sw.Vehicle(bodies=pair)
+
+
+@pytest.mark.parametrize("hinged", [False, True])
+def test_a_viaduct_of_many_spans_is_as_one_of_few(hinged: bool) -> None:
+    # Far from the ends of a continuous beam its length does not matter.
+    def deflection(spans: int) -> float:
+        at = 20.0 * (spans // 2) + 10.0
+        hinges = [20.0 * (spans // 2) + x for x in (4.0, 56.0)] if hinged else []
+        bridge = sw.Bridge(
+            spans=[20.0] * spans, hinges=hinges, EI=3e9, mass=9e3, stations_per_span=1
+        )
+        return float(bridge.deflections([at], [at])[0, 0])
+
+    few = deflection(21)
+    assert deflection(61) == pytest.approx(few, rel=1e-8)
+    assert deflection(801) == pytest.approx(few, rel=1e-4)
