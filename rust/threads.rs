@@ -25,17 +25,15 @@ pub fn of_use(threads: usize, tasks: usize) -> usize {
     threads.min(CROWD * processors).min(tasks).max(1)
 }
 
-/// A pool of this many threads, or of fewer if the system does not give as many.
+/// A pool of this many threads, or of fewer if the system does not give as many; at the worst the caller's own.
 pub fn pool(threads: usize) -> Result<ThreadPool, Error> {
-    let built = ThreadPoolBuilder::new()
-        .num_threads(threads)
+    let builder = ThreadPoolBuilder::new()
         .stack_size(STACK)
         .thread_name(|i| format!("spanwise-{i}"))
         // For as long as the thread lives.
-        .start_handler(|_| std::mem::forget(Standard::set()))
-        .build();
-    match built {
-        Err(_) if threads > 1 => pool(threads / 2),
-        built => built.map_err(|e| Error::Threads(e.to_string())),
+        .start_handler(|_| std::mem::forget(Standard::set()));
+    match threads {
+        0 => builder.num_threads(1).use_current_thread().build().map_err(|e| Error::Threads(e.to_string())),
+        _ => builder.num_threads(threads).build().or_else(|_| pool(threads / 2)),
     }
 }

@@ -73,7 +73,7 @@ for wagon in range(100):
     "many masses": (
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
         "train = sw.MovingMasses(masses=[100.0] * 500, spacings=[2.0] * 499)",
-        "sw.cross(b, train, speed=60.0, damping=0.02, modes=1)",
+        "sw.cross(b, train, speed=60.0, damping=0.02, modes=1, step=0.005, beta=0.25)",
     ),
     "static loads": (
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
