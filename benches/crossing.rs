@@ -37,8 +37,8 @@ fn kishan_1973(c: &mut Criterion) {
         b.iter(|| cross(&analysis.model, &vehicle, &steady, &mut || true).unwrap());
     });
     let history = cross(&analysis.model, &vehicle, &rolling, go_on).unwrap();
-    let packed = analysis.rows.pack_history(&history, &mut || true).unwrap();
-    group.bench_function("recovery/pack", |b| b.iter(|| analysis.rows.pack_history(&history, &mut || true).unwrap()));
+    let packed = analysis.rows.pack_history(&history);
+    group.bench_function("recovery/pack", |b| b.iter(|| analysis.rows.pack_history(&history)));
     group.bench_function("recovery/extremes", |b| {
         b.iter(|| survey(&history, &analysis.rows, &packed, &analysis.responses, &mut || true).unwrap());
     });

@@ -120,7 +120,7 @@ impl Analysis {
     ) -> Result<Outcome, Error> {
         let _mode = Standard::set();
         let history = cross_all(&self.model, passages, settings, go_on)?;
-        let packed = self.rows.pack_history(&history, go_on)?;
+        let packed = self.rows.pack_history(&history);
         let envelope = survey(&history, &self.rows, &packed, &self.responses, go_on)?;
         Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope })
     }

@@ -356,8 +356,8 @@ impl Rows {
         (dynamic, at_rest)
     }
 
-    /// All instants of a history made ready; `go_on` is asked now and then whether to.
-    pub fn pack_history(&self, history: &History, go_on: &mut dyn FnMut() -> bool) -> Result<Packed, Error> {
+    /// All instants of a history made ready.
+    pub fn pack_history(&self, history: &History) -> Packed {
         let axles = history.axles;
         let mut packed = Packed::default();
         packed.coordinates.reserve_exact(self.width * history.len());
@@ -369,11 +369,8 @@ impl Rows {
                 *place = self.place(x);
             }
             self.pack(&Instant::of(history, i, &places), &mut packed);
-            if i % POLL_EVERY == 0 && !go_on() {
-                return Err(Error::Interrupted);
-            }
         }
-        Ok(packed)
+        packed
     }
 
     /// The responses of a range at every instant, dynamic and static, row by row.

@@ -79,7 +79,7 @@ for wagon in range(100):
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
         "found = sw.ensemble(b, TRUCK, samples=60000, speed=20.0, damping=0.02,"
         " factors={'body_mass': np.linspace(0.9, 1.1, 60000)}, quantities=['deflection'])",
-        "found._core.static_loads()",
+        "found._recipe.static_loads()",
     ),
     "many threads": (
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)",

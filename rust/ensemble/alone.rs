@@ -108,7 +108,7 @@ pub fn cross(
         history.a.iter_mut().for_each(|a| *a *= stiffness);
         history.a_dot.iter_mut().for_each(|v| *v *= rates);
     }
-    let packed = rows.pack_history(&history, go_on)?;
+    let packed = rows.pack_history(&history);
     let envelope = survey(&history, rows, &packed, responses, go_on)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);

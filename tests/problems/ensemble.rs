@@ -234,7 +234,7 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
     let mut history = cross_all(&own, &[passage], &settings, &mut || true)?;
     history.a.iter_mut().for_each(|a| *a *= stiffness);
     history.a_dot.iter_mut().for_each(|v| *v *= root * factor);
-    let envelope = survey(&history, rows, &rows.pack_history(&history, &mut || true)?, responses, &mut || true)?;
+    let envelope = survey(&history, rows, &rows.pack_history(&history), responses, &mut || true)?;
     Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness })
 }
 
