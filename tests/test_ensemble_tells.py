@@ -41,7 +41,8 @@ def failing() -> sw.Ensemble:
     heavy[[3, 17]] = 1e6
     road = sw.ISO8608("B", period=128.0)
     given = {"approach": 6.0, "ramp": 3.0, "road": road, "advance": 0.2, "speed": 20.0}
-    return ensemble(SIMPLE, masses, factors={"body_mass": heavy}, **given)
+    with pytest.warns(sw.PlausibilityWarning, match="are loads in N"):
+        return ensemble(SIMPLE, masses, factors={"body_mass": heavy}, **given)
 
 
 def row(text: str, name: str, table: str = "impact factor") -> str:

@@ -109,7 +109,12 @@ def test_copies(found: sw.Ensemble) -> None:
     for each in (pickle.loads(pickle.dumps(found)), copy.deepcopy(found)):
         check_equal(each, found)
     assert pickle.loads(pickle.dumps(found.envelope("moment"))) == found.envelope("moment")
-    assert copy.deepcopy(found.body_accelerations) == found.body_accelerations
+    for each in (found.body_accelerations, found.off_road, found.impact_factors):
+        for another in (copy.deepcopy(each), copy.copy(each), pickle.loads(pickle.dumps(each))):
+            assert another == each
+        assert each != "something else"
+    assert found.impact_factors != found.ratios(mask=0.5)
+    assert found.impact_factors != made("side by side", 1, 3).impact_factors
     assert found != "an ensemble"
     assert found != made("side by side", 1, 3)
 
@@ -197,17 +202,19 @@ def test_what_is_no_list_of_parts() -> None:
 
 def failing(first: int, count: int) -> sw.Ensemble:
     """Every third sample fails: heavy masses that ride side by side accelerate each other."""
-    return sw.ensemble(
-        BRIDGE,
-        sw.MovingMasses(masses=[500.0] * 4, positions=[0.0, -0.01, -0.02, -0.03]),
-        samples=count,
-        first=first,
-        speed=20.0,
-        modes=2,
-        damping=0.02,
-        advance=0.2,
-        factors={"body_mass": np.where(np.arange(first, first + count) % 3 == 2, 1e6, 1.0)},
-    )
+    heavy = np.where(np.arange(first, first + count) % 3 == 2, 1e6, 1.0)
+    with pytest.warns(sw.PlausibilityWarning, match="are loads in N"):
+        return sw.ensemble(
+            BRIDGE,
+            sw.MovingMasses(masses=[500.0] * 4, positions=[0.0, -0.01, -0.02, -0.03]),
+            samples=count,
+            first=first,
+            speed=20.0,
+            modes=2,
+            damping=0.02,
+            advance=0.2,
+            factors={"body_mass": heavy},
+        )
 
 
 def test_failures_are_kept(tmp_path: Path) -> None:

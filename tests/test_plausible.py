@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import spanwise as sw
+from spanwise import _plausible
 from spanwise.cli import main
 
 EI, MASS = 4e9, 9e3
@@ -66,6 +67,7 @@ DOUBTED: Final[list[tuple[Callable[[Any], object], str]]] = [
     (lambda go: go(bridge(mass=MASS * 200.0), car()), r"^EI, mass: .*instead of kg/m"),
     (lambda go: go(bridge(), forces(1e8, 1e8)), r"^loads, EI: .*by about .* m; are loads in N"),
     (lambda go: go(bridge(), forces(90.0, 90.0)), r"^loads: .*90 N.*kN"),
+    (lambda go: go(bridge(), forces(250.0, 225.0)), r"^loads: .*250 N.*kN"),
     (lambda go: go(bridge(), car(mass=16.0, pitch_inertia=40.0)), r"^loads: .*masses in t"),
     (lambda go: go(bridge(), soft("tyre_stiffness")), r"^tyre_stiffness: .*kN/m"),
     (lambda go: go(bridge(), soft("suspension_stiffness")), r"^suspension_stiffness: .*kN/m"),
@@ -170,7 +172,10 @@ def test_unusual_structures_are_not_doubted() -> None:
     one = sw.ForceTrain(loads=[1e5], positions=[0.0])
     for speed in (20.0, 150.0, 400.0):
         cross(bridge(), one, speed)
-    cross(bridge(), forces(1.0, 1.0))
+    cross(bridge(), sw.vehicles.quarter_car(), 100.0)
+    # Loads of reference, and the first harmonic of a pedestrian.
+    for loads in ((1.0, 1.0), (100.0, 100.0), (10.0,), (280.0,)):
+        cross(bridge(25.0, mass=2e3), forces(*loads))
 
 
 def test_railways_are_not_doubted() -> None:
@@ -190,6 +195,68 @@ def test_a_slip_of_many_vehicles_is_told_once() -> None:
         sw.ensemble(bridge(), kinds, samples=30, kind=range(30), speed=20.0, modes=2, damping=0.01)
     assert len(told) == 1
     assert told[0].filename == __file__
+
+
+#: What is varied of a car, and what is said of it.
+VARIED: Final[dict[str, tuple[dict[str, Any], str]]] = {
+    "kN/m": ({"values": {"suspension_stiffness": 400.0}}, "^suspension_stiffness: .*kN/m"),
+    "N/mm": ({"values": {"tyre_stiffness": [2e6, 2e3]}}, "^tyre_stiffness: .*kN/m"),
+    "t": ({"values": {"body_mass": 16.0}}, "^loads: .*masses in t"),
+    "of kinds": ({"values": {"body_mass": [16.0, 8e3]}, "kind": [0, 1]}, "^loads: .*masses in t"),
+    "g": ({"factors": {"body_mass": [1.0, 1e3]}}, "^loads, EI: .*bend"),
+    "of an axle": (
+        {"factors": {"suspension_stiffness": [[1.0, 1.0], [1e-3, 1e-3]]}},
+        "^suspension_stiffness: .*sags",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", VARIED)
+def test_varied_vehicles_are_doubted(name: str) -> None:
+    given, says = VARIED[name]
+    vehicle = [car(), car(mass=8e3)] if "kind" in given else car()
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        ensemble(bridge(), vehicle, **given)
+    assert any(re.search(says, str(each.message)) for each in told)
+    assert {each.category for each in told} == {sw.PlausibilityWarning}
+
+
+def test_what_varies_within_reason_is_not_doubted() -> None:
+    """Of vehicles that are: a light one on soft springs beside a heavy one on stiff springs."""
+    spread = np.array([0.03, 1.0, 10.0])
+    factors = {"body_mass": spread, "suspension_stiffness": spread, "tyre_stiffness": spread}
+    ensemble(bridge(), car(), samples=3, factors=factors)
+    ensemble(bridge(), car(), samples=0, factors={"body_mass": np.zeros(0)})
+    # What is no vehicle is among the failures, not in the way.
+    one = {"body_mass": [1.0, 1e305]}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sw.PlausibilityWarning)
+        assert len(ensemble(bridge(), car(), factors=one).failures) <= 1  # type: ignore[attr-defined]
+
+
+def test_many_kinds_are_looked_at_in_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A profile is gone through once, and what was told once is not asked for again."""
+    asked: list[str] = []
+
+    def spied_on(module: Any, name: str) -> None:
+        plain = getattr(module, name)
+
+        def spy(*given: Any) -> Any:
+            asked.append(name)
+            return plain(*given)
+
+        monkeypatch.setattr(module, name, spy)
+
+    road = profile(0.25)
+    spied_on(np, "median")
+    spied_on(_plausible, "_loads")
+    spied_on(_plausible, "_springs")
+    kinds = [forces(90.0, 90.0 + k) for k in range(30)]
+    with pytest.warns(sw.PlausibilityWarning, match="^loads"):
+        ensemble(bridge(), kinds, samples=30, kind=range(30), road=road + sw.Step(5.0, 0.01))
+    counts = [asked.count(each) for each in ("median", "_loads", "_springs")]
+    assert counts == [1, 1, 30]
 
 
 def test_one_kind_can_be_silenced_by_its_first_word() -> None:

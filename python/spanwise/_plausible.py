@@ -6,8 +6,10 @@ times as wide as what is published, so that footbridges, models in laboratories 
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Final, TypeAlias
 
@@ -33,9 +35,10 @@ _SHORT: Final = 4.0
 #: Static deflection under the vehicles by span beyond which no bridge is used; codes allow 1/250.
 _DEFLECTED: Final = 1.0 / 20.0
 
-#: Largest axle load that is less than a pedestrian [N], and the mass of a span from which on it is
-#: no model in a laboratory [kg]. A load of 1 is a unit load.
-_LIGHT, _FULL_SIZE, _UNIT = 500.0, 5e3, 1.0
+#: Largest axle load that is hardly one [N]: above those of railways in kN, below the 280 N by which
+#: the load of a pedestrian swings. And the mass of a span from which on it is no model in a
+#: laboratory [kg].
+_LIGHT, _FULL_SIZE = 275.0, 5e3
 
 #: Speeds that cars and trains do not reach [m/s], and what tells trains: the stiffness of a wheel
 #: on a rail [N/m], the length of a train of forces [m].
@@ -68,16 +71,18 @@ def doubt(
     seen: set[str] = set()
     for passage in (each for event in events for each in event):
         fastest = _fastest(passage, speed, drive)
-        for key, said in (
-            ("deflection", _deflection(passage, span, moving, first_frequency, gravity)),
-            ("loads", _loads(passage, moving, gravity)),
-            ("springs", _springs(passage, gravity)),
-            ("speed", _speed(passage, fastest)),
-            ("spacing", _spacing(passage.road or road, fastest)),
-            ("step", _passed_over(passage.road or road, fastest, step, advance)),
-        ):
-            # Of many vehicles the first of each kind of slip tells enough.
-            if said and key not in seen:
+        surface = passage.road or road
+        checks: dict[str, Callable[[], str | None]] = {
+            "deflection": partial(_deflection, passage, span, moving, first_frequency, gravity),
+            "loads": partial(_loads, passage, moving, gravity),
+            "springs": partial(_springs, passage, gravity),
+            "speed": partial(_speed, passage, fastest),
+            "spacing": partial(_spacing, surface, fastest),
+            "step": partial(_passed_over, surface, fastest, step, advance),
+        }
+        # Of many vehicles the first of each kind of slip tells enough.
+        for key, check in checks.items():
+            if key not in seen and (said := check()) is not None:
                 seen.add(key)
                 found.append(said)
     for said in found:
@@ -156,7 +161,8 @@ def _deflection(
 def _loads(passage: Passage, moving: float, gravity: float) -> str | None:
     """Of a vehicle on a bridge that is no model: loads in kN, masses in t."""
     most = float(passage.vehicle.static_loads(gravity).max())
-    if not 0.0 < most < _LIGHT or most == _UNIT or moving < _FULL_SIZE:
+    # Powers of ten are loads of reference, by which results are scaled.
+    if not 0.0 < most < _LIGHT or moving < _FULL_SIZE or math.log10(most).is_integer():
         return None
     return (
         f"loads: the largest axle load is {most:.4g} N, less than that of a pedestrian, on a span "
@@ -181,14 +187,12 @@ def _springs(passage: Passage, gravity: float) -> str | None:
 
 
 def _speed(passage: Passage, speed: float) -> str | None:
-    """Of a vehicle: speed in km/h. That of a single force is left to theory."""
-    if speed <= _ROAD_SPEED:
-        return None
+    """Of a vehicle: speed in km/h. That of a single axle is left to theory."""
     truck = passage.vehicle
+    if speed <= _ROAD_SPEED or len(truck.axle_positions) == 1:
+        return None
     if isinstance(truck, Vehicle):
         rails = all(axle.tyre_stiffness >= _ON_RAILS for axle in truck.axles)
-    elif len(truck.axle_positions) == 1:
-        return None
     else:
         rails = truck.wheelbase >= _LONG
     if speed <= (_RAIL_SPEED if rails else _ROAD_SPEED):
@@ -205,7 +209,7 @@ def _spacing(road: Road, speed: float) -> str | None:
         return next(filter(None, (_spacing(each, speed) for each in road.parts)), None)
     if not isinstance(road, Profile) or road.is_smooth:
         return None
-    spacing = float(np.median(np.diff(road.x)))
+    spacing = road.spacing
     if spacing <= max(_FINE, speed / (2.0 * _FELT)):
         return None
     return (
@@ -241,7 +245,7 @@ def _shortest(road: Road) -> tuple[float, float]:
     if isinstance(road, ISO8608):
         return patch, 1.0 / road.band[1]
     if isinstance(road, Profile):
-        return patch, 2.0 * float(np.median(np.diff(road.x)))
+        return patch, 2.0 * road.spacing
     # Of a single feature the core takes short enough steps, unless a step is given.
     lengths = [getattr(road, name, 0.0) for name in ("edge", "gap", "length")]
     lengths.append(getattr(road, "end", 0.0) - getattr(road, "start", 0.0))

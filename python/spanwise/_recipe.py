@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, TypeAlias
 
@@ -141,6 +142,21 @@ class Recipe(Value):
         return [
             _scaled(passage.vehicle, *each) for passage, each in zip(event, varied, strict=True)
         ]
+
+    def varied_most(self) -> Iterator[Event]:
+        """Events with the smallest and the largest of each factor on masses and springs."""
+        if self.samples == 0:
+            return
+        rows = set()
+        for each in self.factors:
+            if each.name in SHARED_OUT:
+                places = (int(each.values.argmin()), int(each.values.argmax()))
+                rows |= {place // each.values.shape[1] for place in places}
+        for row in sorted(rows):
+            # What cannot be made of factors is among the failures.
+            with suppress(ValueError):
+                pairs = zip(self.event(row), self.vehicles(row), strict=True)
+                yield tuple(replace(passage, vehicle=vehicle) for passage, vehicle in pairs)
 
     def run(self, sample: int, rows: Rows) -> Run:
         """The sample by a crossing of its own."""

@@ -151,7 +151,8 @@ def ensemble(
     DampingWarning
         If `damping` is not given.
     PlausibilityWarning
-        As for `cross`.
+        As for `cross`, of vehicles as given and of those with the smallest and the largest of each
+        factor on masses and springs.
     UserWarning
         If what a factor multiplies is 0 in all vehicles, or is the damping of a bridge without.
 
@@ -201,7 +202,7 @@ def ensemble(
     doubt(
         bridge,
         bridge.modes(conditions.modes).frequencies[0],
-        events,
+        [*events, *recipe.varied_most()],
         speed=float(speeds.column.max(initial=0.0)),
         drive=recipe.drive,
         road=recipe.settings["road"],

@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Final, Literal, TypeAlias
 
@@ -94,6 +95,11 @@ class Profile(Road):
         self.__post_init__()
         for doubt in doubts(self.x, self.elevations):
             warnings.warn(doubt, PlausibilityWarning, stacklevel=2)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Median distance of neighbouring points [m]."""
+        return float(np.median(np.diff(self.x)))
 
     def _made(self) -> _core.Road:
         return _core.Road.profile(
