@@ -637,6 +637,7 @@ RESULTS: Final = {
     "Extremes",
     "Failure",
     "ImpactFactors",
+    "IriSegments",
     "IsoClass",
     "LiftOff",
     "Modes",
@@ -721,15 +722,17 @@ ARRAYS: Final[dict[str, tuple[Callable[[Any], object], list[Any]]]] = {
                 speed=20.0,
                 damping=0.0,
                 kind=np.asarray(v, int),
-            ).moment.max
+            )
+            .envelope("moment")
+            .max
         ),
         [1.0, 0.0, 1.0],
     ),
     "factors": (
         lambda v: (
-            sw.ensemble(
-                B, Q, samples=3, speed=20.0, damping=0.0, factors={"body_mass": v}
-            ).moment.max
+            sw.ensemble(B, Q, samples=3, speed=20.0, damping=0.0, factors={"body_mass": v})
+            .envelope("moment")
+            .max
         ),
         [1.0, 0.5, 2.0],
     ),

@@ -201,7 +201,9 @@ class Passage:
     direction : {"right", "left"}, optional
         Where it goes; one that goes to the left enters at the right end.
     entry : float, optional
-        When its front axle is at the start of the approach [s]. Before that it is on level road.
+        When its front axle is at the start of the approach [s]. Before that it comes nearer on
+        level road; with ``ramp=0`` on the road as it is, which must then reach back to where its
+        last axle is at the beginning.
     lane : int, optional
         Vehicles of the same lane must not overlap. By default 0 for travel to the right, 1 for
         travel to the left.

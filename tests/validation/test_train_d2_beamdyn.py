@@ -67,7 +67,8 @@ def test_frequencies_and_static_values() -> None:
     assert_allclose(run.frequencies, [3.554308, 14.217321, 31.989846], rtol=5e-5)
     deflections = run.envelope("deflection").static_max
     assert deflections.value.max() == pytest.approx(static_deflection(), rel=1e-4)
-    # BeamDyn has it by modes and in steps.
+    # The printed value lies 0.2 % lower, for a reason not known here: by three modes it would be
+    # 0.02 % higher.
     assert deflections.value.max() == pytest.approx(1.123341e-2, rel=2e-3)
     assert run.envelope("moment").static_max.value.max() == pytest.approx(5.08219e6, rel=1e-4)
 
