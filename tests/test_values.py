@@ -128,6 +128,7 @@ RESULTS: dict[str, Callable[[sw.Run], Any]] = {
     "Modes": lambda run: run.bridge.modes(3),
     "Settlement": lambda run: run.bridge.settlement([0.0, 0.01]),
     "IsoClass": lambda run: run.road.iso_class(0.0, 1000.0),
+    "IriSegments": lambda run: run.road.iri(0.0, 100.0, every=20.0),
 }
 
 
@@ -156,7 +157,7 @@ def test_results_are_values(run: sw.Run, name: str) -> None:
     again = sw.cross(run.bridge, run.passages, speed=25.0, damping=0.02, road=run.road)
     assert RESULTS[name](again) == value
     assert value != "something else"
-    if name not in ("Settlement", "Modes", "IsoClass"):
+    if name not in ("Settlement", "Modes", "IsoClass", "IriSegments"):
         faster = sw.cross(run.bridge, run.passages, speed=26.0, damping=0.02, road=run.road)
         assert RESULTS[name](faster) != value or name == "OffRoad"
 
@@ -202,6 +203,15 @@ def test_what_is_the_same() -> None:
 
 def crossed(speed: float) -> sw.Run:
     return sw.cross(beam(), sw.vehicles.half_car(), speed=speed, damping=0.02)
+
+
+def test_what_many_read_cannot_be_written_to() -> None:
+    found = sw.ISO8608("C").iri(0.0, 100.0, every=20.0)
+    profile = sw.Profile(np.arange(9.0), np.zeros(9))
+    for values in (found.starts, found.ends, found.values, profile.x, crossed(20.0).moment):
+        with pytest.raises(ValueError, match="read-only"):
+            values[0] = 1.0
+    assert sw.ISO8608("C").iri(0.0, 100.0, every=25.0) != found
 
 
 def test_runs_come_back_from_other_processes() -> None:

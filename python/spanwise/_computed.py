@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._core import __version__
-from spanwise._value import same
+from spanwise._value import frozen, same
 from spanwise.bridge import Bridge
 from spanwise.traffic import Passage
 
@@ -18,12 +18,6 @@ Array: TypeAlias = NDArray[np.float64]
 
 #: What of a call the histories depend on beside the states.
 ASKED = ("modes", "damping", "damping_matrix", "sections", "recovery")
-
-
-def frozen(values: Array) -> Array:
-    """The array, kept from being changed by mistake: others read it too."""
-    values.setflags(write=False)
-    return values
 
 
 class Computed:

@@ -238,7 +238,7 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
                 side: _percentiles(getattr(extremes, side)) for side in ("max", "min")
             }
         for factor, (name, _) in FACTORS.items():
-            if name in (*ensemble.quantities, "axle_loads"):
+            if ensemble._looks_at(name):
                 found["impact_factors"][factor] = _percentiles(ensemble.impact_factors[factor])
     table: dict[str, Any] = plain(found)
     return table

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from spanwise._events import Event
 from spanwise._recipe import Recipe
+from spanwise._shown import many
 from spanwise._variation import Factors
 from spanwise.columns import ROUNDING, SampleExtremes, Sense
 from spanwise.damping import in_words
@@ -72,7 +73,7 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
     recipe, settings = ensemble._recipe, ensemble.settings
     failed = f", {len(ensemble.failures)} failed" if ensemble.failures else ""
     yield (
-        f"ensemble  {_many(ensemble.samples)} from number {ensemble.first} of seed "
+        f"ensemble  {many(ensemble.samples, 'sample')} from number {ensemble.first} of seed "
         f"{ensemble.seed}{failed}"
     )
     yield f"bridge    {ensemble.bridge!r}"
@@ -187,10 +188,6 @@ def _step(ensemble: Ensemble) -> str:
     return 'of each sample as for cross, run(i).settings["step"] tells'
 
 
-def _many(samples: int) -> str:
-    return f"{samples} sample{'' if samples == 1 else 's'}"
-
-
 def _head(title: str) -> str:
     percentiles = "".join(f"{f'{p:g} %':>10}" for p in PERCENTILES)
     return f"{title:<{NAME}}{percentiles}{'max':>10}"
@@ -200,7 +197,7 @@ def _extremes(ensemble: Ensemble) -> Iterator[str]:
     """Of the largest along the bridge in each sample."""
     rows, varied = [], False
     for name, quantity, side, scale in ROWS:
-        if quantity != "axle_loads" and quantity not in ensemble.quantities:
+        if not ensemble._looks_at(quantity):
             continue
         extremes: SampleExtremes = ensemble.envelope(quantity)
         if extremes.max.shape[1] == 0:
@@ -287,7 +284,7 @@ def _factors(ensemble: Ensemble) -> Iterator[str]:
     """Impact factors where the static value is largest."""
     yield f"{_with_mean('impact factor')}{'at':>14}"
     for name, (quantity, sense) in FACTORS.items():
-        if quantity != "axle_loads" and quantity not in ensemble.quantities:
+        if not ensemble._looks_at(quantity):
             continue
         extremes: SampleExtremes = ensemble.envelope(quantity)
         where = governing(*by_sense(extremes, sense))
@@ -341,7 +338,7 @@ def _few(ensemble: Ensemble) -> Iterator[str]:
     if not weak or _alike(ensemble._recipe):
         return
     listed = " and ".join(filter(None, [", ".join(weak[:-1]), weak[-1]]))
-    yield f"of {_many(samples)} {listed} say little: fewer than {BEYOND} lie beyond"
+    yield f"of {many(samples, 'sample')} {listed} say little: fewer than {BEYOND} lie beyond"
     yield ""
 
 

@@ -44,7 +44,7 @@ def frame(ensemble: Ensemble, by: By) -> pd.DataFrame:
         table: pd.DataFrame = pandas.DataFrame(dict(_by_sample(ensemble)), index=index)
         table.attrs["governing"] = {name: x for name, (_, x) in _governing(ensemble).items()}
         return table
-    names = [each for each in PLACES[by] if each in (*ensemble.quantities, "axle_loads")]
+    names = [each for each in PLACES[by] if ensemble._looks_at(each)]
     if not names:
         raise ValueError(f'by = "{by}": this ensemble has {", ".join(ensemble.quantities)}')
     x = ensemble.envelope(names[0]).x
@@ -115,7 +115,7 @@ def _governing(ensemble: Ensemble) -> dict[Factor, tuple[int, float]]:
     """By impact factor, which section, support or axle governs, and where that is."""
     found: dict[Factor, tuple[int, float]] = {}
     for name, (quantity, sense) in FACTORS.items():
-        if quantity in (*ensemble.quantities, "axle_loads") and ensemble.samples > 0:
+        if ensemble._looks_at(quantity) and ensemble.samples > 0:
             extremes: SampleExtremes = ensemble.envelope(quantity)
             where = governing(*by_sense(extremes, sense))
             found[name] = where, float(extremes.x[where])

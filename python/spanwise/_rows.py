@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._value import Value
-from spanwise.columns import Moments, frozen
+from spanwise._value import Value, frozen
+from spanwise.columns import Moments
 
 Array: TypeAlias = NDArray[np.float64]
 Whole: TypeAlias = NDArray[np.uint32]

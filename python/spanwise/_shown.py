@@ -36,6 +36,11 @@ class _Short(reprlib.Repr):
         return f"{{{', '.join(found)}}}"
 
 
+def many(number: int, what: str) -> str:
+    """A number of things in words."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
 def shown(value: object) -> str:
     """The value as text on one line, cut where it is long."""
     try:

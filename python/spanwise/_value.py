@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import MISSING, fields
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
+
+Array: TypeAlias = NDArray[np.float64]
 
 #: Most parts of a list that a text shows, and most characters of what it shows of one.
 PARTS: Final = 4
@@ -68,6 +71,12 @@ def brief(value: object) -> str:
         few = parts[:2] if sum(map(len, parts[:2])) <= CHARACTERS // 2 else parts[:1]
         return f"{left}{', '.join(few)}, ... {len(value)} in all{right}"
     return repr(value)
+
+
+def frozen(values: Array) -> Array:
+    """The array, kept from being changed by mistake: others read it too."""
+    values.setflags(write=False)
+    return values
 
 
 class Brief:

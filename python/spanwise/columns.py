@@ -10,7 +10,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._value import Value
+from spanwise._value import Value, frozen
 
 Array: TypeAlias = NDArray[np.float64]
 Sense: TypeAlias = Literal["positive", "negative", "either"]
@@ -20,12 +20,6 @@ ROUNDING: Final = 1e-9
 
 #: When, and where the front axle is then, for the largest or the smallest values.
 Moments: TypeAlias = tuple[Array, Array]
-
-
-def frozen(values: Array) -> Array:
-    """The array, kept from being changed by mistake: others read it too."""
-    values.setflags(write=False)
-    return values
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -18,8 +18,9 @@ from spanwise._conditions import masked
 from spanwise._recipe import Recipe
 from spanwise._renamed import renamed
 from spanwise._rows import Rows
-from spanwise._value import Value
-from spanwise.columns import Array, Moments, SampleExtremes, Sense, frozen
+from spanwise._shown import many
+from spanwise._value import Value, frozen
+from spanwise.columns import Array, Moments, SampleExtremes, Sense
 from spanwise.runs import Run
 
 if TYPE_CHECKING:
@@ -188,6 +189,14 @@ class SampleFactors:
     def axle_loads(self) -> Array:
         return self["axle_loads"]
 
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same factors of equal ensembles."""
+        if type(other) is not SampleFactors:
+            return NotImplemented
+        return self.mask == other.mask and self._ensemble == other._ensemble
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __repr__(self) -> str:
         return f"SampleFactors({self._ensemble.samples} samples, {len(self.sections)} sections)"
 
@@ -319,6 +328,11 @@ class Ensemble:
             Instants(self, start, all_ + start, width),
         )
 
+    def _looks_at(self, quantity: str) -> bool:
+        """Whether a quantity was looked at, on one side of sections or both."""
+        of = quantity.removesuffix("_left").removesuffix("_right")
+        return of in (*self.quantities, "axle_loads")
+
     @property
     def _not_looked_at(self) -> str:
         have = ", ".join(self.quantities)
@@ -358,8 +372,7 @@ class Ensemble:
             If there is no such quantity, or it was not looked at.
         """
         name = named("quantity", quantity, get_args(Looked))
-        looked_at = name.removesuffix("_left").removesuffix("_right")
-        if looked_at not in (*self.quantities, "axle_loads"):
+        if not self._looks_at(name):
             raise ValueError(f'quantity = "{name}": {self._not_looked_at}')
         if name not in self._envelopes:
             self._envelopes[name] = self._found(name)
@@ -388,8 +401,7 @@ class Ensemble:
         """Attributes that have other names now; those of `Run` alike are histories."""
         if name in get_args(Looked):
             renamed(f"Ensemble.{name}", f'Ensemble.envelope("{name}")')
-            looked_at = name.removesuffix("_left").removesuffix("_right")
-            if looked_at not in (*self.quantities, "axle_loads"):
+            if not self._looks_at(name):
                 raise AttributeError(f"{name}: {self._not_looked_at}")
             return self.envelope(name)
         if name in ("lift_offs", "time_off_road"):
@@ -453,7 +465,7 @@ class Ensemble:
         """Those of one kind, shape (sample, section, support or axle)."""
         name = named("quantity", quantity, FACTORS)
         of, sense = FACTORS[name]
-        if of not in (*self.quantities, "axle_loads"):
+        if not self._looks_at(of):
             what = "" if of == name else f"{of} "
             raise ValueError(f'quantity = "{name}": {what}{self._not_looked_at}')
         return self.envelope(of).factors(sense, mask)
@@ -570,8 +582,8 @@ class Ensemble:
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
         return (
-            f"Ensemble({_many(self.samples, 'sample')} from {self.first} of seed "
-            f"{self.seed}{failed}, {_many(len(self.sections), 'section')}, "
+            f"Ensemble({many(self.samples, 'sample')} from {self.first} of seed "
+            f"{self.seed}{failed}, {many(len(self.sections), 'section')}, "
             f"{', '.join(self.quantities)}; hash {self.hash})"
         )
 
@@ -652,7 +664,3 @@ class Ensemble:
         from spanwise.plotting import EnsemblePlot
 
         return EnsemblePlot(self)
-
-
-def _many(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._checks import choice, named
-from spanwise._computed import Computed, frozen
+from spanwise._computed import Computed
 from spanwise._conditions import masked
-from spanwise._value import Value, same
+from spanwise._value import Value, frozen, same
 from spanwise.bridge import Bridge
 from spanwise.roads import Road
 from spanwise.table import ImpactFactors

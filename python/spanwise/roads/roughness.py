@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from spanwise import _core
 from spanwise._checks import number, numbers, shown
 from spanwise._extras import require
+from spanwise._value import Value, frozen
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -69,8 +70,8 @@ class IsoClass:
     band: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class IriSegments:
+@dataclass(frozen=True, eq=False, repr=False)
+class IriSegments(Value):
     """The international roughness index of a section, segment by segment.
 
     Attributes
@@ -88,6 +89,10 @@ class IriSegments:
     ends: Array
     values: Array
     lead_in: float
+
+    def __post_init__(self) -> None:
+        for each in (self.starts, self.ends, self.values):
+            frozen(each)
 
     def __len__(self) -> int:
         return len(self.values)

@@ -58,8 +58,6 @@ _CONDITION: Final = Keys(
     ("condition",),
 )
 
-_PLAIN: Final = (Smooth, Step, Ramp, Bump, Pothole, Joint, Camber)
-
 #: What makes each kind of road, and of which keys.
 KINDS: Final[dict[str, tuple[Maker, Keys]]] = {
     ISO8608.kind: (_iso, _ISO),
