@@ -540,6 +540,7 @@ REFUSALS: list[Refusal] = [
     (lambda: measured().psd(0.0, 50.0, spacing=2.0), ("spacing = 2 m", "1.5625 m")),
     (lambda: measured().psd(0.0, 50.0, segment=0.1), ("segment = 0.1 m", "0.4 m", "50 m")),
     (lambda: measured().psd(0.0, 50.0, segment=0.5), ("segment = 0.5 m", "hold a wave of 0.625 m")),
+    (lambda: measured().psd(0.0, 2.0), ("end = 2 m", "2.5 m or more beyond start, 0 m")),
     (lambda: measured().iri(0.0, 50.0, every=0.1), ("every = 0.1 m", "0.25 m")),
     (lambda: measured().iri(0.0, 50.0, every="all"), ("every = 'all'", NUMBER)),  # type: ignore[call-overload]
     (

@@ -173,6 +173,7 @@ def psd(
         allowed = f"must be at most {step * _MOST:g} m beyond start, {start:g} m"
         raise ValueError(f"end = {end:g} m: {allowed}")
     known = min(known, _HELD / step)
+    is_given = segment is not None
     segment = length / 4 if segment is None else number("segment", segment)
     if not 8 * step <= segment <= length:
         allowed = f"must be {8 * step:g} m, eight samples, to {length:g} m, the section"
@@ -196,8 +197,11 @@ def psd(
     density /= len(firsts) * np.sinc(wave_numbers * step) ** 2
     held = (wave_numbers > 0.0) & (wave_numbers <= known * (1 + 1e-12))
     if not held.any():
-        allowed = f"must hold a wave of {1.0 / known:g} m, the shortest that is known"
-        raise ValueError(f"segment = {segment:g} m: {allowed}")
+        least = 1.0 / known  # the shortest wave that can be told
+        if is_given:
+            raise ValueError(f"segment = {segment:g} m: must hold a wave of {least:g} m")
+        beyond = f"must lie {4.0 * least:g} m or more beyond start, {start:g} m"
+        raise ValueError(f"end = {end:g} m: {beyond}")
     return wave_numbers[held], density[held]
 
 
