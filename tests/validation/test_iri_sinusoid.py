@@ -26,7 +26,7 @@ WAVES = [
     (50.0, 0.13659, 0.01093, 0.01093),
 ]
 
-#: The mean slope over steps of 10 mm takes 2e-4 of waves of 1 m, the start up to 1e-3 of 1500 m.
+#: The mean slope over steps of 10 mm takes 3e-4 of waves of 1 m, the start up to 1e-3 of 1500 m.
 AGREES = 2e-3
 
 
