@@ -41,6 +41,7 @@ def headline(samples: int, threads: int | None) -> sw.Ensemble:
         road=sw.ISO8608(ROAD_CLASS, period=128.0),
         sections=np.linspace(0.0, LENGTH, SECTIONS).tolist(),
         quantities=["deflection", "moment", "shear", "reactions"],
+        tail=0.0,
         threads=threads,
         **PARAMETERS,
     )

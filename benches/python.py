@@ -13,7 +13,9 @@ HISTORIES = ("deflection", "moment", "shear_left", "shear_right", "reactions")
 
 
 def crossed(drive: Drive, *, fetch: bool) -> sw.Run:
-    run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.0, drive=drive, step=1e-3)
+    run = sw.cross(
+        BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.0, drive=drive, step=1e-3, tail=0.0
+    )
     if fetch:
         for name in HISTORIES:
             getattr(run, name), getattr(run.static, name)

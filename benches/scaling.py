@@ -61,6 +61,7 @@ class Case:
             "approach": 30,
             "ramp": 10,
             "advance": 0.02286,
+            "tail": 0.0,
             "sections": places,
             "threads": self.threads,
         }

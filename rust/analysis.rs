@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bridge::Bridge;
 use crate::course::Passage;
-use crate::crossing::{ModalBridge, cross_all};
+use crate::crossing::{ModalBridge, cross_watched};
 use crate::damping::Damping;
 use crate::envelope::{Envelope, axle_loads};
 use crate::error::Error;
@@ -17,7 +17,8 @@ use crate::modes::Modes;
 use crate::path::ModeShapes;
 use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
 use crate::settings::Settings;
-use crate::survey::survey;
+use crate::survey::Survey;
+use crate::tail::{FreeRows, Reach, Watch};
 use crate::vehicle::Vehicle;
 
 /// Most memory that the histories of one quantity may take [bytes].
@@ -41,6 +42,8 @@ pub struct Analysis {
     pub missing: Vec<Quantity>,
     /// How they follow from modal states.
     pub rows: Rows,
+    /// The same without vehicles on the bridge.
+    pub free: FreeRows,
 }
 
 impl Analysis {
@@ -74,7 +77,8 @@ impl Analysis {
         let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
         let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
         let rows = Rows::new(&responses, &factors, &modes.omega, &lines, mesh, recovery);
-        Ok(Analysis { sections, modes, model, responses, missing: Vec::new(), rows })
+        let free = FreeRows::new(&rows, &responses, &model);
+        Ok(Analysis { sections, modes, model, responses, missing: Vec::new(), rows, free })
     }
 
     /// Of a bridge `given` by its flexibility or its modes, in `count` modes, looking at some of its sections [m].
@@ -98,7 +102,8 @@ impl Analysis {
             damping: in_modes,
             narrowest_panel: given.narrowest_panel(),
         };
-        Ok(Analysis { sections, modes, model, responses, missing: given.missing().to_vec(), rows })
+        let free = FreeRows::new(&rows, &responses, &model);
+        Ok(Analysis { sections, modes, model, responses, missing: given.missing().to_vec(), rows, free })
     }
 
     /// One crossing by one vehicle.
@@ -119,10 +124,11 @@ impl Analysis {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Outcome, Error> {
         let _mode = Standard::set();
-        let history = cross_all(&self.model, passages, settings, go_on)?;
-        let packed = self.rows.pack_history(&history);
-        let envelope = survey(&history, &self.rows, &packed, &self.responses, go_on)?;
-        Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope })
+        let mut watching = Watching::new(self, &self.free, [1.0, 1.0]);
+        let mut history = cross_watched(&self.model, passages, settings, &mut watching, go_on)?;
+        let (packed, envelope) = watching.conclude(&mut history, go_on)?;
+        let bounds = history.reach.as_ref().map(|reach| self.free.bounds(reach));
+        Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope, bounds })
     }
 
     /// An outcome that has travelled, with what did not.
@@ -184,6 +190,66 @@ pub struct Outcome {
     pub envelope: Envelope,
     /// Extremes of the axle loads.
     pub axle_loads: Envelope,
+    /// Largest magnitude of every response that free vibration after the end can reach; none where a vehicle stands on
+    /// the bridge.
+    pub bounds: Option<Vec<f64>>,
+}
+
+/// The survey of a crossing on its way.
+pub struct Watching<'a> {
+    analysis: &'a Analysis,
+    /// The responses that count.
+    free: &'a FreeRows,
+    /// What A and Ȧ are to be multiplied by for the rows.
+    factors: [f64; 2],
+    packed: Packed,
+    survey: Option<Survey<'a>>,
+}
+
+impl<'a> Watching<'a> {
+    /// By the rows of an analysis, which take A and Ȧ so many times as large; the tail is to be long enough for some of
+    /// its responses.
+    pub fn new(analysis: &'a Analysis, free: &'a FreeRows, factors: [f64; 2]) -> Self {
+        Watching { analysis, free, factors, packed: Packed::default(), survey: None }
+    }
+
+    /// Takes in what has been recorded since.
+    fn take_in(&mut self, history: &mut History, go_on: &mut dyn FnMut() -> bool) -> Result<&Survey<'a>, Error> {
+        let Analysis { rows, responses, .. } = self.analysis;
+        let [coordinates, rates] = self.factors;
+        history.scale(self.packed.len(), coordinates, rates);
+        rows.pack_on(history, &mut self.packed);
+        let survey = self.survey.get_or_insert_with(|| Survey::new(history, rows, responses));
+        survey.go_on(history, &self.packed, go_on)?;
+        Ok(survey)
+    }
+
+    /// What it has come to, the crossing being over.
+    pub fn conclude(
+        mut self,
+        history: &mut History,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(Packed, Envelope), Error> {
+        self.take_in(history, go_on)?;
+        let Watching { analysis, packed, survey, .. } = self;
+        let survey = survey.unwrap_or_else(|| Survey::new(history, &analysis.rows, &analysis.responses));
+        let envelope = survey.conclude(history, &packed);
+        Ok((packed, envelope))
+    }
+}
+
+impl Watch for Watching<'_> {
+    fn enough(
+        &mut self,
+        history: &mut History,
+        reach: &Reach<f64>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Error> {
+        let (free, [coordinates, rates]) = (self.free, self.factors);
+        let survey = self.take_in(history, go_on)?;
+        let load = history.static_loads.iter().sum();
+        Ok(free.settled(&reach.clone().scaled(coordinates, rates), load, |row| survey.reached(free.responses[row])))
+    }
 }
 
 fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {

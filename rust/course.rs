@@ -277,13 +277,13 @@ impl<'a> Course<'a> {
         self.direction.sign() * self.datum(settings, length).slope
     }
 
-    /// The road on its way, if that is uneven.
+    /// The road on its way, if that is uneven. It goes on in the tail; where what was measured ends, at the last elevation.
     pub fn pavement(&self, settings: &Settings, length: f64) -> Option<Pavement> {
         let place = |way: f64| self.place(way, length);
         (!self.road.is_smooth()).then(|| Pavement {
             road: self.road.off(self.datum(settings, length)),
             start: place(-settings.approach),
-            end: place(length + self.wheelbase()),
+            end: self.road.ends()[usize::from(self.direction == Direction::Right)],
             ramp: settings.ramp,
             direction: self.direction.sign(),
         })

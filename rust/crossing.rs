@@ -13,6 +13,7 @@ use crate::modes::Modes;
 use crate::path::{Free, Ground, ModeShapes, Prescribed};
 use crate::settings::Settings;
 use crate::steps::{Steps, narrowest_panel};
+use crate::tail::{Blind, Watch};
 use crate::vehicle::{MAX_AXLES, Suspension, Vehicle};
 
 /// The bridge in modal coordinates, ready to be crossed.
@@ -81,11 +82,23 @@ pub fn cross(
     cross_all(model, &[Passage::of(vehicle.clone())], settings, go_on)
 }
 
-/// Crosses the bridge with several vehicles at once.
+/// Crosses the bridge with several vehicles at once. A tail that is not given is as long as it may be, for there are no
+/// responses to look at.
 pub fn cross_all(
     model: &ModalBridge,
     passages: &[Passage],
     settings: &Settings,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<History, Error> {
+    cross_watched(model, passages, settings, &mut Blind, go_on)
+}
+
+/// The same, while `watch` looks at it.
+pub fn cross_watched(
+    model: &ModalBridge,
+    passages: &[Passage],
+    settings: &Settings,
+    watch: &mut dyn Watch,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<History, Error> {
     settings.check()?;
@@ -127,11 +140,9 @@ pub fn cross_all(
         let mirrored = courses.iter().map(|course| course.direction == Direction::Left).collect();
         let start = (0..owner.len()).map(|axle| motion(0, axle)).collect();
         let mut geometry = Free::new(ground, free, mirrored, start, rates);
-        March::new(model, &courses, settings, &steps).run(&mut geometry, &Free::stop, go_on)
+        March::new(model, &courses, settings, &steps).run(&mut geometry, &Free::stop, watch, go_on)
     } else {
-        // One more than needed, so that rounding of the tail does not matter.
-        let with_tail = steps.count + (settings.tail / steps.h).ceil() as usize + 1;
-        let mut geometry = Prescribed::new(ground, motion, with_tail, rates, go_on)?;
-        March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), go_on)
+        let mut geometry = Prescribed::new(ground, motion, steps.count, rates);
+        March::new(model, &courses, settings, &steps).run(&mut geometry, &|_, _| (), watch, go_on)
     }
 }

@@ -30,8 +30,9 @@ use crate::float_mode::Standard;
 use crate::influence::Quantity;
 use crate::path::Pavement;
 use crate::road::random::Synthesis;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
 use crate::steps::{MAX_STEPS, Steps};
+use crate::tail::FreeRows;
 use crate::vehicle::{MAX_AXLES, Vehicle};
 use look::Look;
 use record::Layout;
@@ -66,6 +67,8 @@ pub struct Study {
     advance: Option<f64>,
     /// The responses looked at.
     pub look: Look,
+    /// Their rows without vehicles on the bridge.
+    pub free: FreeRows,
     /// Whether samples share the geometry.
     pub shares: bool,
 }
@@ -102,7 +105,8 @@ impl Study {
         if look.chosen.is_empty() {
             return Err(Error::input("quantities", "[]", "at least one response must be looked at"));
         }
-        let mut study = Study { analysis, kinds: Vec::new(), settings, own, advance, look, shares };
+        let free = analysis.free.of(look.rows.iter().map(|row| row.response));
+        let mut study = Study { analysis, kinds: Vec::new(), settings, own, advance, look, free, shares };
         for passages in kinds {
             let bodies = passages[0].vehicle.assembly().bodies.iter();
             let bodies = bodies.map(|[heave, _]| heave.iter().copied().collect()).collect();
@@ -221,11 +225,11 @@ impl Study {
         let (steps, _) = self.plan(kind);
         let steps = steps << halvings;
         let advance = (self.settings.approach + length + wheelbase) / steps as f64;
-        let beyond = if self.settings.tail > 0.0 { (wheelbase / advance).ceil() as usize + 2 } else { 0 };
+        let beyond = usize::from(self.settings.tail != Tail::Fixed(0.0));
         let pavement = Pavement {
             road: self.settings.road.off(self.settings.road.datum(-self.settings.approach, length)),
             start: -self.settings.approach,
-            end: length + wheelbase,
+            end: self.settings.road.ends()[1],
             ramp: self.settings.ramp,
             direction: 1.0,
         };
@@ -287,12 +291,13 @@ impl Study {
                 way *= 0.5;
                 halvings += 1;
             }
-            let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + self.settings.tail * speed / way;
+            let tail = self.settings.tail.seconds().unwrap_or(0.0);
+            let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
                 let usual = way > Steps::resolving(fastest).min(limit) * speed;
                 let (key, value) = match self.settings.step {
                     _ if steps as f64 * f64::from(1u32 << halvings.min(30)) < 0.5 * count => {
-                        ("tail".to_string(), format!("{} s", self.settings.tail))
+                        ("tail".to_string(), format!("{tail} s"))
                     }
                     Some(step) if !usual => ("step".to_string(), format!("{step} s")),
                     _ => match samples.farthest(sample) {

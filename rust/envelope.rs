@@ -56,11 +56,12 @@ pub struct Envelope {
     pub at_rest: Extremes,
 }
 
-/// Extremes of the axle loads.
+/// Extremes of the axle loads until the last vehicle has left the bridge: what they are in the tail is none of its
+/// business, and would depend on how long that is.
 pub fn axle_loads(history: &History) -> Envelope {
     let axles = history.axles;
     let mut envelope = Envelope { dynamic: Extremes::none(axles), at_rest: Extremes::none(axles) };
-    for (i, loads) in history.loads.chunks_exact(axles).enumerate() {
+    for (i, loads) in history.loads.chunks_exact(axles).enumerate().take(history.last_on + 1) {
         let (time, position) = (history.time[i], history.positions[i * axles]);
         for (k, (&load, &static_load)) in loads.iter().zip(&history.static_loads).enumerate() {
             envelope.dynamic.take(k, Extreme { value: load, time, position, partner: static_load });

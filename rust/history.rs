@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::assembly::{Assembly, Sprung};
 use crate::newmark::Coordinate;
 use crate::step::{Geometry, State};
+use crate::tail::Reach;
 
 /// A vehicle's columns in a [`History`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,15 @@ pub struct History {
     pub vehicles: Vec<Columns>,
     /// Time step [s]; the last row may end a shorter one.
     pub step: f64,
+    /// When the last vehicle had left the bridge, or stood for good [s].
+    pub ended: f64,
+    /// The last row that counts for what concerns vehicles only: by its end all had left the bridge. Where some stand on
+    /// it for good, the last of all.
+    pub last_on: usize,
+    /// Whether the tail ended because nothing that is looked at can follow.
+    pub settled: bool,
+    /// What free vibration can reach after the end; none where a vehicle stands on the bridge.
+    pub reach: Option<Reach<f64>>,
     /// Static axle loads [N].
     pub static_loads: Vec<f64>,
     /// Time since the start [s].
@@ -100,12 +110,13 @@ impl History {
         self.vehicles.iter().find(|v| v.axles.contains(&axle)).map_or(1.0, |v| v.direction)
     }
 
-    /// Every time a wheel was off the road, axle by axle. At the instants the load of such a wheel is exactly zero.
+    /// Every time a wheel was off the road until the last vehicle had left the bridge, axle by axle. At the instants the
+    /// load of such a wheel is exactly zero.
     pub fn lift_offs(&self) -> Vec<LiftOff> {
         let mut all = Vec::new();
         for axle in (0..self.axles).filter(|&axle| self.static_loads[axle] > 0.0) {
             let mut from = None;
-            for (i, &time) in self.time.iter().enumerate() {
+            for (i, &time) in self.time[..=self.last_on].iter().enumerate() {
                 let off = self.loads[i * self.axles + axle] == 0.0;
                 match from {
                     None if off => from = Some(time),
@@ -116,8 +127,8 @@ impl History {
                     _ => {}
                 }
             }
-            if let (Some(from), Some(&to)) = (from, self.time.last()) {
-                all.push(LiftOff { axle, from, to });
+            if let Some(from) = from {
+                all.push(LiftOff { axle, from, to: self.time[self.last_on] });
             }
         }
         all
@@ -201,6 +212,15 @@ impl History {
             (&mut self.rubbing, f),
             (&mut self.elevations, k),
         ]
+    }
+
+    /// Multiplies A and Ȧ from a row on.
+    pub(crate) fn scale(&mut self, from: usize, coordinates: f64, rates: f64) {
+        for (values, factor) in [(&mut self.a, coordinates), (&mut self.a_dot, rates)] {
+            if factor != 1.0 {
+                values[from * self.modes..].iter_mut().for_each(|value| *value *= factor);
+            }
+        }
     }
 
     /// Makes room for this many instants.

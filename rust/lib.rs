@@ -5,7 +5,7 @@
 //! [`vehicle`] is put into the coordinates of an [`assembly`]; on a [`road`] it presses on the bridge through its
 //! [`contact`]s, with [`friction`] in its suspensions. One [`step`] moves the bridge ([`modal`]) and every vehicle
 //! ([`rig`]) together. Each vehicle has its [`course`], prescribed as a [`motion`] or not, and its [`path`] over the
-//! modes; a [`crossing`] is [`march`]ed through in [`steps`], and its [`history`] kept. [`recovery`] turns modal states
+//! modes; a [`crossing`] is [`march`]ed through in [`steps`], its [`tail`] included, and its [`history`] kept. [`recovery`] turns modal states
 //! into responses, and the [`survey`] of a history into the [`envelope`] of their extremes; [`analysis`] joins it all up.
 
 pub mod error;
@@ -52,6 +52,7 @@ pub mod crossing;
 pub mod history;
 pub mod march;
 pub mod steps;
+pub mod tail;
 
 pub mod recovery;
 pub mod sequence;

@@ -6,9 +6,10 @@ use crate::error::Error;
 use crate::history::{Columns, History};
 use crate::newmark::Coordinate;
 use crate::rig::Rig;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
 use crate::step::{Brakes, Geometry, Moving, Propulsion, Scheme, State, Stepper, Unsettled};
 use crate::steps::{MAX_STEPS, Steps};
+use crate::tail::{LOOK_EVERY, Vibration, Watch};
 
 /// Most steps between two questions whether to go on.
 const POLL_EVERY: usize = 1024;
@@ -26,11 +27,17 @@ pub struct March<'a> {
     leaves: Option<usize>,
     stepper: Stepper<f64>,
     starter: Stepper<f64>,
+    /// The bridge by itself.
+    vibration: Vibration<f64>,
     /// After so many steps a vehicle that rolls freely counts as stopped.
     most_steps: usize,
+    /// Most steps of the tail.
+    tail: usize,
     history: History,
     /// When each vehicle had left the bridge or stood for good.
     ended: Vec<Option<f64>>,
+    /// Whether one stands on the bridge.
+    loaded: bool,
     /// When each vehicle began to brake.
     braking_since: Vec<Option<f64>>,
 }
@@ -69,28 +76,34 @@ impl<'a> March<'a> {
                 stopped: None,
             });
         }
-        history.reserve(steps.count + (settings.tail / steps.h) as usize + 16);
+        // No more than twice as much as is needed for certain.
+        history.reserve(steps.count + steps.tail.min(steps.count) + 16);
+        let stepper = Stepper::new(&model.omega, &model.damping, &moving, &scheme);
         March {
             courses,
             settings,
             length,
             h: steps.h,
             leaves: steps.advance.map(|_| steps.count),
-            stepper: Stepper::new(&model.omega, &model.damping, &moving, &scheme),
-            most_steps: (20 * (steps.count + 1000)).min(2 * MAX_STEPS) + (settings.tail / steps.h) as usize,
+            vibration: stepper.vibration(),
+            stepper,
+            most_steps: (20 * (steps.count + 1000)).min(2 * MAX_STEPS) + steps.tail,
+            tail: steps.tail,
             starter: Stepper::new(&model.omega, &model.damping, &moving, &Scheme { h: 0.0, ..scheme }),
             history,
             ended: vec![None; courses.len()],
+            loaded: false,
             braking_since: vec![None; courses.len()],
         }
     }
 
-    /// Marches until every vehicle has left or stands, and the tail is over; `stop` holds a contact of the geometry where
-    /// it is.
+    /// Marches until every vehicle has left or stands, and the tail is over, of which `watch` has its say; `stop` holds a
+    /// contact of the geometry where it is.
     pub fn run<G: Geometry<f64>>(
         mut self,
         geometry: &mut G,
         stop: &dyn Fn(&mut G, usize),
+        watch: &mut dyn Watch,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<History, Error> {
         let front = |geometry: &G| geometry.motion(0).x;
@@ -107,6 +120,7 @@ impl<'a> March<'a> {
         self.check_apart(0.0, geometry)?;
         self.record(0.0, &state, geometry);
         let every = (PAIRS / self.history.axles.pow(2)).clamp(1, POLL_EVERY);
+        let mut exit = None;
         for n in 1.. {
             let time = n as f64 * self.h;
             let before = front(geometry);
@@ -129,11 +143,10 @@ impl<'a> March<'a> {
                 None => self.note_ends(time),
             }
             if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
-                let end = end + self.settings.tail;
-                if time >= end - 1e-9 * self.h {
-                    if time > end + 1e-9 * self.h {
-                        self.history.shorten_last(1.0 - (time - end) / self.h);
-                    }
+                let exit = *exit.get_or_insert(n);
+                self.history.ended = end;
+                if self.is_over((n, exit), end, &state.modes, watch, go_on)? {
+                    self.history.last_on = if self.loaded { n } else { exit };
                     return Ok(self.history);
                 }
             }
@@ -145,6 +158,41 @@ impl<'a> March<'a> {
             }
         }
         unreachable!("the loop over steps has no end")
+    }
+
+    /// Whether the tail is over in step n, the last vehicle having ended at the time `end` and by the end of step `exit`;
+    /// then it is cut where it is over.
+    fn is_over(
+        &mut self,
+        (n, exit): (usize, usize),
+        end: f64,
+        modes: &[Coordinate<f64>],
+        watch: &mut dyn Watch,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Error> {
+        let time = n as f64 * self.h;
+        let over = match self.settings.tail {
+            Tail::Fixed(tail) => {
+                let end = end + tail;
+                let over = time >= end - 1e-9 * self.h;
+                if over && time > end + 1e-9 * self.h {
+                    self.history.shorten_last(1.0 - (time - end) / self.h);
+                }
+                over
+            }
+            Tail::Free if (n - exit).is_multiple_of(LOOK_EVERY) => n - exit >= self.tail,
+            Tail::Free => return Ok(false),
+        };
+        // A vehicle that stands on the bridge rocks with it, so that the bound does not hold.
+        if self.loaded || self.settings.tail.seconds().is_some() && !over {
+            return Ok(over);
+        }
+        let reach = self.vibration.reach(modes);
+        let free = self.settings.tail == Tail::Free;
+        self.history.settled = free && watch.enough(&mut self.history, &reach, go_on)?;
+        let over = over || self.history.settled;
+        self.history.reach = over.then_some(reach);
+        Ok(over)
     }
 
     fn record(&mut self, time: f64, state: &State<f64>, geometry: &impl Geometry<f64>) {
@@ -223,6 +271,10 @@ impl<'a> March<'a> {
                 self.ended[v] = Some(course.entry + stands);
             } else if let Some(stopped) = self.history.vehicles[v].stopped {
                 self.ended[v] = Some(stopped);
+            }
+            if self.ended[v].is_some() && self.history.vehicles[v].stopped.is_some() {
+                let row = &self.history.positions[(self.history.len() - 1) * self.history.axles..];
+                self.loaded |= row[course.axles.clone()].iter().any(|x| (0.0..=self.length).contains(x));
             }
         }
     }

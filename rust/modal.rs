@@ -6,6 +6,9 @@ use faer::linalg::solvers::DenseSolveCore;
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
 
+/// What a D may have beside its diagonal, relative to that, for the modes to be damped each by itself: rounding.
+const BESIDE: f64 = 1e-9;
+
 /// Damping of the included modes, D = ΦᵀCΦ.
 #[derive(Debug, Clone)]
 pub enum ModalDamping {
@@ -20,6 +23,8 @@ pub enum ModalDamping {
 pub struct ModalSolve<L> {
     /// Classical damping, of each mode by itself: D and the inverse are diagonal, and only that is kept; else by rows.
     pub classical: bool,
+    /// Whether no energy goes from mode to mode: so it is by a full D too that has next to nothing beside its diagonal.
+    pub apart: bool,
     omega2: Vec<L>,
     damping: Vec<L>,
     inverse: Vec<L>,
@@ -35,6 +40,7 @@ impl<L: Lane> ModalSolve<L> {
                 let inverse = omega.iter().zip(&d).map(|(w, d)| 1.0 / (1.0 + 0.5 * h * d + beta * h * h * w * w));
                 ModalSolve {
                     classical: true,
+                    apart: true,
                     omega2,
                     inverse: inverse.map(L::splat).collect(),
                     damping: d.into_iter().map(L::splat).collect(),
@@ -46,8 +52,10 @@ impl<L: Lane> ModalSolve<L> {
                     0.5 * h * d[(i, j)] + if i == j { 1.0 + beta * h * h * omega[i].powi(2) } else { 0.0 }
                 });
                 let inverse = matrix.partial_piv_lu().inverse();
+                let beside = |i: usize, j: usize| d[(i, j)].powi(2) <= BESIDE * BESIDE * d[(i, i)] * d[(j, j)];
+                let apart = (0..n).all(|i| (0..n).all(|j| i == j || beside(i, j)));
                 let by_rows = |m: &Mat<f64>| (0..n * n).map(|ij| L::splat(m[(ij / n, ij % n)])).collect();
-                ModalSolve { classical: false, omega2, damping: by_rows(d), inverse: by_rows(&inverse) }
+                ModalSolve { classical: false, apart, omega2, damping: by_rows(d), inverse: by_rows(&inverse) }
             }
         }
     }
@@ -59,10 +67,21 @@ impl<L: Lane> ModalSolve<L> {
         };
         ModalSolve {
             classical: each[0].classical,
+            apart: each[0].apart,
             omega2: of(|solve| &solve.omega2),
             damping: of(|solve| &solve.damping),
             inverse: of(|solve| &solve.inverse),
         }
+    }
+
+    /// Ω² of each mode.
+    pub fn omega2(&self) -> &[L] {
+        &self.omega2
+    }
+
+    /// D: of each mode if it is classical, else by rows.
+    pub fn rates(&self) -> &[L] {
+        &self.damping
     }
 
     /// Number of modes.

@@ -1,6 +1,5 @@
 //! Where the contacts are and what lies under them: prescribed beforehand, or following the vehicles.
 
-use crate::error::Error;
 use crate::lane::Lane;
 use crate::line::{Line, Mesh};
 use crate::newmark::Coordinate;
@@ -17,8 +16,8 @@ const PLACED: f64 = 1e-9;
 /// The same where forces follow the speed of the axle too, which is off by the square of the step.
 const PLACED_BY_RATES: f64 = 1e-11;
 
-/// Steps between two questions whether to go on.
-const POLL_EVERY: usize = 64;
+/// Steps of prescribed motion that are laid out at a time, so that a crossing can be ended between them.
+const LAID: usize = 64;
 
 /// The included modes along the bridge, laid out for evaluation at one point after another.
 #[derive(Debug, Clone)]
@@ -115,7 +114,7 @@ pub struct Pavement {
     pub road: Road,
     /// Where the vehicle's front starts, from the left end of the bridge [m].
     pub start: f64,
-    /// From where on it is level, the last axle having left [m].
+    /// From where on it is level, not being known [m].
     pub end: f64,
     /// Way on which the unevenness fades in [m].
     pub ramp: f64,
@@ -207,8 +206,10 @@ impl Ground<'_> {
 
 /// Prescribed motion: known beforehand, so that one table serves every sample that moves alike.
 #[derive(Debug, Clone)]
-pub struct Prescribed<'a> {
+pub struct Prescribed<'a, M> {
     ground: Ground<'a>,
+    /// Motion along the bridge of a contact at a step.
+    motion: M,
     contacts: usize,
     step: usize,
     /// Motion along the bridge by step and contact.
@@ -220,36 +221,33 @@ pub struct Prescribed<'a> {
     surfaces: Vec<Surface<f64>>,
 }
 
-impl<'a> Prescribed<'a> {
-    /// With the contacts moving along the bridge as `motion` says at each of a number of `steps`; with `slopes` and
-    /// curvatures of the modes if the step asks for them; `go_on` is asked now and then whether to.
-    pub fn new(
-        ground: Ground<'a>,
-        motion: impl Fn(usize, usize) -> Coordinate<f64>,
-        steps: usize,
-        slopes: bool,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Self, Error> {
+impl<'a, M: Fn(usize, usize) -> Coordinate<f64>> Prescribed<'a, M> {
+    /// With the contacts moving along the bridge as `motion` says at each step, of which there will be so many and perhaps a
+    /// tail; with `slopes` and curvatures of the modes if the step asks for them.
+    pub fn new(ground: Ground<'a>, motion: M, steps: usize, slopes: bool) -> Self {
         let kinds = if slopes { 3 } else { 1 };
         let (shapes, contacts) = (ground.shapes, ground.vehicle.len());
         let mut motions = Vec::new();
-        motions.reserve_exact((steps + 1) * contacts);
+        motions.reserve_exact((steps + 2) * contacts);
         let mut table = Vec::new();
-        table.reserve_exact((steps + 1) * contacts * shapes.modes * kinds);
-        for step in 0..=steps {
-            for contact in 0..contacts {
-                let motion = motion(step, contact);
-                motions.push(motion);
-                shapes.extend_at(motion.x, kinds, &mut table);
-            }
-            if step % POLL_EVERY == 0 && !go_on() {
-                return Err(Error::Interrupted);
+        table.reserve_exact((steps + 2) * contacts * shapes.modes * kinds);
+        let surfaces = vec![Surface::LEVEL; contacts];
+        let mut path = Prescribed { ground, motion, contacts, step: 0, motions, kinds, table, surfaces };
+        path.lay(2);
+        path.look_down();
+        path
+    }
+
+    /// Lays the table out for so many more steps.
+    fn lay(&mut self, steps: usize) {
+        let from = self.motions.len() / self.contacts;
+        for step in from..from + steps {
+            for contact in 0..self.contacts {
+                let motion = (self.motion)(step, contact);
+                self.motions.push(motion);
+                self.ground.shapes.extend_at(motion.x, self.kinds, &mut self.table);
             }
         }
-        let surfaces = vec![Surface::LEVEL; contacts];
-        let mut path = Prescribed { ground, contacts, step: 0, motions, kinds, table, surfaces };
-        path.look_down();
-        Ok(path)
     }
 
     fn here(&self) -> &[Coordinate<f64>] {
@@ -270,9 +268,13 @@ impl<'a> Prescribed<'a> {
     }
 }
 
-impl<L: Lane> Geometry<L> for Prescribed<'_> {
+impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed<'_, M> {
     fn advance(&mut self) {
         self.step += 1;
+        // One more than where they are, for the look ahead.
+        if self.motions.len() < (self.step + 2) * self.contacts {
+            self.lay(LAID);
+        }
         self.look_down();
     }
 

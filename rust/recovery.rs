@@ -358,19 +358,25 @@ impl Rows {
 
     /// All instants of a history made ready.
     pub fn pack_history(&self, history: &History) -> Packed {
-        let axles = history.axles;
         let mut packed = Packed::default();
-        packed.coordinates.reserve_exact(self.width * history.len());
-        packed.static_coordinates.reserve_exact(self.width * history.len());
-        packed.axles.reserve_exact(axles * history.len());
+        self.pack_on(history, &mut packed);
+        packed
+    }
+
+    /// The same, of the instants that have been added to the history since.
+    pub fn pack_on(&self, history: &History, packed: &mut Packed) {
+        let (axles, from) = (history.axles, packed.len());
+        let more = history.len() - from;
+        packed.coordinates.reserve(self.width * more);
+        packed.static_coordinates.reserve(self.width * more);
+        packed.axles.reserve(axles * more);
         let mut places = vec![None; axles];
-        for (i, positions) in history.positions.chunks_exact(axles).enumerate() {
+        for (i, positions) in history.positions.chunks_exact(axles).enumerate().skip(from) {
             for (place, &x) in places.iter_mut().zip(positions) {
                 *place = self.place(x);
             }
-            self.pack(&Instant::of(history, i, &places), &mut packed);
+            self.pack(&Instant::of(history, i, &places), packed);
         }
-        packed
     }
 
     /// The responses of a range at every instant, dynamic and static, row by row.

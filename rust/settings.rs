@@ -7,6 +7,26 @@ use crate::error::{Error, not_negative, positive};
 use crate::motion::reasonable;
 use crate::road::Road;
 
+/// How much free vibration is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tail {
+    /// So long [s].
+    Fixed(f64),
+    /// Until no response that is looked at can exceed what it has reached, or for ten periods of the slowest included
+    /// mode, as also where vehicles stand on the bridge: see [`crate::tail`].
+    Free,
+}
+
+impl Tail {
+    /// How long, if that is given [s].
+    pub fn seconds(self) -> Option<f64> {
+        match self {
+            Tail::Fixed(tail) => Some(tail),
+            Tail::Free => None,
+        }
+    }
+}
+
 /// How vehicles cross.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -25,8 +45,8 @@ pub struct Settings {
     /// Way from the start of the approach on which the road's unevenness fades in [m]; without, vehicles start at rest on
     /// the road under their wheels.
     pub ramp: f64,
-    /// Free vibration kept after the last axle has left, or the last vehicle has stopped [s].
-    pub tail: f64,
+    /// Free vibration kept after the last axle has left, or the last vehicle has stopped.
+    pub tail: Tail,
     /// Gravity [m/s²].
     pub gravity: f64,
     /// Whether wheels leave the road; if not, their loads may become negative.
@@ -45,7 +65,7 @@ impl Settings {
             step: None,
             approach: 0.0,
             ramp: 0.0,
-            tail: 0.0,
+            tail: Tail::Fixed(0.0),
             gravity: 9.806_65,
             lift_off: true,
             road: Arc::new(Road::smooth()),
@@ -60,7 +80,9 @@ impl Settings {
             let allowed = format!("must not be longer than the approach, {} m", self.approach);
             return Err(Error::input("ramp", format!("{} m", self.ramp), allowed));
         }
-        not_negative("tail", self.tail)?;
+        if let Tail::Fixed(tail) = self.tail {
+            not_negative("tail", tail)?;
+        }
         reasonable("gravity", positive("gravity", self.gravity)?, "m/s2")?;
         if let Some(step) = self.step {
             positive("step", step)?;

@@ -14,6 +14,7 @@ use crate::modal::{ModalDamping, ModalSolve};
 use crate::newmark::{Coordinate, Newmark};
 use crate::rig::Rig;
 use crate::stand::{Stand, Stood};
+use crate::tail::Vibration;
 
 /// Most passes in which axle positions and surge follow the corrected state; one or two are usual.
 const PASSES: usize = 50;
@@ -673,7 +674,7 @@ impl<L: Lane> Stepper<L> {
         let contacts = self.elements.contacts.iter().flat_map(Contact::ways);
         let vehicles = self.units.iter().flat_map(|unit| [unit.rig.bare(), unit.rig.surges()]);
         let rubbing = self.elements.rubbing.iter().flat_map(Rubbing::ways);
-        contacts.chain(vehicles).chain([self.modal.classical]).chain(rubbing).collect()
+        contacts.chain(vehicles).chain([self.modal.classical, self.modal.apart]).chain(rubbing).collect()
     }
 
     /// Static loads of all contacts [N].
@@ -688,6 +689,11 @@ impl<L: Lane> Stepper<L> {
         self.above = above(&self.newmark, &self.units, &self.elements);
         self.form = Form::of(&self.modal, &self.units, &self.elements);
         self.stand_alone();
+    }
+
+    /// The bridge by itself.
+    pub fn vibration(&self) -> Vibration<L> {
+        Vibration::new(self.newmark, self.modal.clone())
     }
 
     /// How the contacts feel the bridge where `geometry` has them, as numbers for [`Geometry::coupling`].

@@ -3,7 +3,8 @@
 use crate::course::Course;
 use crate::crossing::ModalBridge;
 use crate::error::Error;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
+use crate::tail::most_steps;
 
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
 pub const MAX_STEPS: usize = 2_000_000;
@@ -33,6 +34,8 @@ pub struct Steps {
     pub h: f64,
     /// Number without the tail, if all vehicles move as prescribed; else about this many.
     pub count: usize,
+    /// Most steps of the tail.
+    pub tail: usize,
     /// Way per step [m] of a vehicle alone at constant speed, which is marched in space: its axles are at the same
     /// places after as many steps whatever its speed.
     pub advance: Option<f64>,
@@ -66,23 +69,20 @@ impl Steps {
         }
         // A path of a whole number of steps is not given one more because of rounding.
         let count = (span / longest - 1e-9).ceil().max(1.0);
-        let steps = count + settings.tail / longest;
-        // Rows of the history, of the same made ready for recovery, and of the table of mode shapes under the axles.
+        let tail = settings.tail.seconds().unwrap_or(0.0);
+        let steps = count + tail / longest;
         let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
         let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
-        let numbers = 1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles;
-        let bytes = (size_of::<f64>() * numbers) as f64;
+        let bytes = bytes(modes, axles, coordinates);
         let blamed = |most: f64| {
             let first = settings.approach / courses[0].speed.max(1e-300);
             let late = courses.iter().map(|course| course.entry).fold(0.0, f64::max);
             let few = |span: f64, tail: f64, step: f64| span / step + tail / step <= most;
             match settings.step {
-                Some(step) if few(span, settings.tail, usual) => Some(("step", format!("{step:e} s"))),
-                _ if few(span, 0.0, longest) => Some(("tail", format!("{:e} s", settings.tail))),
-                _ if few(span - first, settings.tail, longest) => {
-                    Some(("approach", format!("{:e} m", settings.approach)))
-                }
-                _ if few(span - late, settings.tail, longest) => Some(("entry", format!("{late:e} s"))),
+                Some(step) if few(span, tail, usual) => Some(("step", format!("{step:e} s"))),
+                _ if few(span, 0.0, longest) => Some(("tail", format!("{tail:e} s"))),
+                _ if few(span - first, tail, longest) => Some(("approach", format!("{:e} m", settings.approach))),
+                _ if few(span - late, tail, longest) => Some(("entry", format!("{late:e} s"))),
                 _ => None,
             }
         };
@@ -116,14 +116,33 @@ impl Steps {
             let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
             return Err(Error::input(key, value, allowed));
         }
-        Ok(match courses {
+        let (h, advance) = match courses {
             [course] if course.is_steady() => {
                 let advance = course.path(settings, length) / count;
-                Steps { h: advance / course.speed, count: count as usize, advance: Some(advance) }
+                (advance / course.speed, Some(advance))
             }
-            _ => Steps { h: span / count, count: count as usize, advance: None },
-        })
+            _ => (span / count, None),
+        };
+        let tail = match settings.tail {
+            Tail::Fixed(tail) => (tail / h).ceil() as usize,
+            Tail::Free => {
+                let slowest = model.omega.iter().fold(f64::INFINITY, |least, w| w.powi(2).min(least));
+                most_steps(slowest, h, room(count, bytes))
+            }
+        };
+        Ok(Steps { h, count: count as usize, tail, advance })
     }
+}
+
+/// Bytes of a step: a row of the history, one of the same made ready for recovery, and one of the table of mode shapes
+/// under the axles.
+pub fn bytes(modes: usize, axles: usize, coordinates: usize) -> f64 {
+    (size_of::<f64>() * (1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles)) as f64
+}
+
+/// Steps that a crossing of so many, of so many bytes each, may have besides.
+pub fn room(count: f64, bytes: f64) -> f64 {
+    (MAX_STEPS as f64 - count).min(MAX_HISTORY_BYTES / bytes - count).max(0.0)
 }
 
 impl Steps {

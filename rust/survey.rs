@@ -6,6 +6,7 @@ use crate::envelope::{Envelope, Extreme, Extremes};
 use crate::error::Error;
 use crate::history::History;
 use crate::influence::{Quantity, Responses};
+use crate::lane::Lane;
 use crate::recovery::{Block, Instant, Packed, Place, Rows, WIDTH};
 
 /// Extremes of all responses over a history.
@@ -21,38 +22,20 @@ pub fn survey(
     responses: &Responses,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Envelope, Error> {
-    let mut survey = Survey {
-        history,
-        rows,
-        packed,
-        passing: Passing::new(history, rows, responses),
-        dynamic: Extremes::none(rows.len()),
-        at_rest: Extremes::none(rows.len()),
-        watched: vec![[Watched::NOTHING; 2]; rows.blocks()],
-        between: Packed::default(),
-    };
-    // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
-    let arch = pulp::Arch::new();
-    for from in (0..history.len()).step_by(POLL_EVERY) {
-        let to = (from + POLL_EVERY).min(history.len());
-        arch.dispatch(GoThrough { survey: &mut survey, instants: from..to });
-        if !go_on() {
-            return Err(Error::Interrupted);
-        }
-    }
-    survey.conclude();
-    Ok(Envelope { dynamic: survey.dynamic, at_rest: survey.at_rest })
+    let mut survey = Survey::new(history, rows, responses);
+    survey.go_on(history, packed, go_on)?;
+    Ok(survey.conclude(history, packed))
 }
 
 /// Instants between two questions whether to go on.
 const POLL_EVERY: usize = 1024;
 
-struct Survey<'a> {
-    history: &'a History,
+/// The same while the history grows: its instants so far, and the extremes in them.
+pub struct Survey<'a> {
     rows: &'a Rows,
-    /// The instants of the history.
-    packed: &'a Packed,
-    passing: Passing<'a>,
+    /// Instants that have been looked at.
+    seen: usize,
+    passing: Passing,
     /// From the passing of stops, in the end from all.
     dynamic: Extremes,
     at_rest: Extremes,
@@ -65,6 +48,8 @@ struct Survey<'a> {
 /// Some instants of a survey, compiled once for each instruction set.
 struct GoThrough<'s, 'a> {
     survey: &'s mut Survey<'a>,
+    history: &'s History,
+    packed: &'s Packed,
     instants: Range<usize>,
 }
 
@@ -73,17 +58,52 @@ impl pulp::WithSimd for GoThrough<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        self.survey.go_through(self.instants);
+        self.survey.go_through(self.history, self.packed, self.instants);
     }
 }
 
-impl Survey<'_> {
+impl<'a> Survey<'a> {
+    /// Of a history that has begun.
+    pub fn new(history: &History, rows: &'a Rows, responses: &Responses) -> Self {
+        Survey {
+            rows,
+            seen: 0,
+            passing: Passing::new(history, rows, responses),
+            dynamic: Extremes::none(rows.len()),
+            at_rest: Extremes::none(rows.len()),
+            watched: vec![[Watched::NOTHING; 2]; rows.blocks()],
+            between: Packed::default(),
+        }
+    }
+
+    /// Goes on to the last instant that there is, `packed` being those of the history.
+    pub fn go_on(&mut self, history: &History, packed: &Packed, go_on: &mut dyn FnMut() -> bool) -> Result<(), Error> {
+        // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
+        let arch = pulp::Arch::new();
+        while self.seen < history.len() {
+            let instants = self.seen..(self.seen + POLL_EVERY).min(history.len());
+            self.seen = instants.end;
+            arch.dispatch(GoThrough { survey: self, history, packed, instants });
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+        }
+        Ok(())
+    }
+
+    /// Largest and smallest of a response so far.
+    pub fn reached(&self, r: usize) -> [f64; 2] {
+        let [dynamic, _] = &self.watched[r / WIDTH];
+        let (max, min) = (dynamic.max[r % WIDTH], dynamic.min[r % WIDTH]);
+        [max.larger(self.dynamic.max[r].value), min.smaller(self.dynamic.min[r].value)]
+    }
+
     #[inline(always)]
-    fn go_through(&mut self, instants: Range<usize>) {
+    fn go_through(&mut self, history: &History, packed: &Packed, instants: Range<usize>) {
         for (b, watched) in self.watched.iter_mut().enumerate() {
             let [mut dynamic, mut at_rest] = *watched;
             let mut number = instants.start as f64;
-            for now in self.packed.instants(instants.clone()) {
+            for now in packed.instants(instants.clone()) {
                 let (d, s) = self.rows.block(b, now);
                 dynamic.take(&d, number);
                 at_rest.take(&s, number);
@@ -92,52 +112,52 @@ impl Survey<'_> {
             *watched = [dynamic, at_rest];
         }
         for instant in instants.start.max(1)..instants.end {
-            self.pass(instant);
+            self.pass(history, instant);
         }
     }
 
-    /// Adds the extremes at the instants of the history to those at the stops.
-    fn conclude(&mut self) {
+    /// The extremes at the instants of the history and those at the stops together.
+    pub fn conclude(mut self, history: &History, packed: &Packed) -> Envelope {
         for r in 0..self.rows.len() {
             let (b, i) = (r / WIDTH, r % WIDTH);
             let [dynamic, at_rest] = self.watched[b];
             for at in [dynamic.max_at[i], dynamic.min_at[i], at_rest.max_at[i], at_rest.min_at[i]] {
                 let instant = at as usize;
-                let (time, position) =
-                    (self.history.time[instant], self.history.positions[instant * self.history.axles]);
-                for now in self.packed.instants(instant..instant + 1) {
+                let (time, position) = (history.time[instant], history.positions[instant * history.axles]);
+                for now in packed.instants(instant..instant + 1) {
                     let (d, s) = self.rows.block(b, now);
                     self.dynamic.take(r, Extreme { value: d[i], time, position, partner: s[i] });
                     self.at_rest.take(r, Extreme { value: s[i], time, position, partner: d[i] });
                 }
             }
         }
+        Envelope { dynamic: self.dynamic, at_rest: self.at_rest }
     }
 
     /// Takes in every stop that an axle passes between instants i − 1 and i, on both sides of it.
-    fn pass(&mut self, i: usize) {
-        for axle in 0..self.history.axles {
-            while let Some((node, section, fraction)) = self.passing.next(i, axle) {
-                self.passing.state.set(self.history, i, fraction, self.rows);
+    fn pass(&mut self, history: &History, i: usize) {
+        for axle in 0..history.axles {
+            while let Some((node, section, fraction)) = self.passing.next(history, i, axle) {
+                self.passing.state.set(history, i, fraction, self.rows);
                 let left = node.checked_sub(1).map(|panel| (panel, 1.0));
                 let right = (node < self.rows.mesh().panels()).then_some((node, 0.0));
                 let [before, after] = if self.passing.to_the_right[axle] { [left, right] } else { [right, left] };
                 for (side, row) in [(before, i - 1), (after, i)] {
                     self.passing.state.places[axle] = side;
                     if !self.passing.continuous(node) {
-                        self.passing.state.jump(self.history, row, axle);
+                        self.passing.state.jump(history, row, axle);
                     }
-                    self.stop(node, section, axle);
+                    self.stop(history, node, section, axle);
                 }
             }
         }
     }
 
     /// Takes in the responses of a section, or all at an end of the bridge, from the interpolated state.
-    fn stop(&mut self, node: usize, section: Option<usize>, axle: usize) {
+    fn stop(&mut self, history: &History, node: usize, section: Option<usize>, axle: usize) {
         let state = &self.passing.state;
         self.between.clear();
-        self.rows.pack(&state.instant(&self.history.static_loads), &mut self.between);
+        self.rows.pack(&state.instant(&history.static_loads), &mut self.between);
         let (time, position) = (state.time, state.positions[0]);
         let sections = self.passing.sections;
         let mut take = |now, r: usize| {
@@ -160,7 +180,7 @@ impl Survey<'_> {
             for now in self.between.instants(0..1) {
                 let (dynamic, at_rest) = self.rows.block(r / WIDTH, now);
                 let dynamic = dynamic[r % WIDTH] + sign * self.rows.weight() * state.loads[axle];
-                let at_rest = at_rest[r % WIDTH] + sign * self.history.static_loads[axle];
+                let at_rest = at_rest[r % WIDTH] + sign * history.static_loads[axle];
                 self.dynamic.take(r, Extreme { value: dynamic, time, position, partner: at_rest });
                 self.at_rest.take(r, Extreme { value: at_rest, time, position, partner: dynamic });
             }
@@ -177,8 +197,7 @@ struct End {
 }
 
 /// The instants at which an axle stands on a section or on an end of the bridge.
-struct Passing<'a> {
-    history: &'a History,
+struct Passing {
     /// Stops, left to right: node, position [m], and the section there if it is not an end of the bridge.
     stops: Vec<(usize, f64, Option<usize>)>,
     sections: usize,
@@ -202,8 +221,8 @@ struct Interpolated {
     places: Vec<Place>,
 }
 
-impl<'a> Passing<'a> {
-    fn new(history: &'a History, rows: &Rows, responses: &Responses) -> Self {
+impl Passing {
+    fn new(history: &History, rows: &Rows, responses: &Responses) -> Self {
         let (x, last) = (rows.mesh().nodes(), rows.mesh().panels());
         let inner = responses.sections().iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
         let mut stops: Vec<_> = inner.map(|(section, &node)| (node, x[node], Some(section))).collect();
@@ -224,7 +243,7 @@ impl<'a> Passing<'a> {
             End { node: last, supported: responses.supported(last), shear: shear(Quantity::ShearLeft, last, 1.0) },
         ];
         let sections = responses.sections().len();
-        Passing { history, stops, sections, ends, to_the_right, passed, state: Interpolated::default() }
+        Passing { stops, sections, ends, to_the_right, passed, state: Interpolated::default() }
     }
 
     /// Whether nothing jumps as an axle passes a node: all but the free ends, whose tip the wheel drops on or off.
@@ -239,16 +258,16 @@ impl<'a> Passing<'a> {
 
     /// The next stop that an axle passes between instants i − 1 and i: its node, its section, and when, as a fraction.
     #[inline]
-    fn next(&mut self, i: usize, axle: usize) -> Option<(usize, Option<usize>, f64)> {
-        let axles = self.history.axles;
-        let to = self.history.positions[i * axles + axle];
+    fn next(&mut self, history: &History, i: usize, axle: usize) -> Option<(usize, Option<usize>, f64)> {
+        let axles = history.axles;
+        let to = history.positions[i * axles + axle];
         let (number, stops) = (self.passed[axle], &self.stops);
         let &(node, x, section) = match self.to_the_right[axle] {
             true => stops.get(number).filter(|stop| stop.1 <= to)?,
             false => stops.get(stops.len().checked_sub(number + 1)?).filter(|stop| stop.1 >= to)?,
         };
         self.passed[axle] += 1;
-        let from = self.history.positions[(i - 1) * axles + axle];
+        let from = history.positions[(i - 1) * axles + axle];
         Some((node, section, (x - from) / (to - from)))
     }
 }

@@ -15,6 +15,14 @@ from spanwise.population import FACTORS
 Same: TypeAlias = Callable[[sw.Ensemble, int, sw.Run], None]
 
 
+def last_on(run: sw.Run) -> int:
+    """The instant by which the last axle has left; the last one where a vehicle stands there."""
+    if run._core.reach("deflection") is None:
+        return len(run.time) - 1
+    ended = run.time[-1] - run.tail
+    return int(np.searchsorted(run.time, ended - 1e-9))
+
+
 def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     """All that both give is equal to the bit, or differs by rounding where sums are made anew."""
     for name in (*ensemble.quantities, "axle_loads"):
@@ -41,8 +49,9 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     np.testing.assert_allclose(off, run.off_road.total, rtol=1e-9, atol=1e-12)
     accelerations = ensemble.body_accelerations.max[sample]
     bodies = [body for vehicle in run.vehicles for body in vehicle.bodies]
+    until = slice(None, last_on(run) + 1)
     for found, body in zip(accelerations, bodies, strict=False):
-        expected = np.abs(body.heave.acceleration).max()
+        expected = np.abs(body.heave.acceleration[until]).max()
         np.testing.assert_allclose(found, expected, rtol=1e-9)
     x = np.concatenate([vehicle.axle_positions for vehicle in run.vehicles], axis=1)
     on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)

@@ -11,7 +11,7 @@ use spanwise::error::Error;
 use spanwise::history::History;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
@@ -118,7 +118,7 @@ fn steps_beyond_the_stability_limit_are_refused() {
     let bridge = kishan_bridge();
     let vehicle = kishan_vehicle_with_friction(f64::INFINITY);
     let with = |beta: f64, step: Option<f64>, tail: f64| {
-        let settings = Settings { beta, step, tail, ..Settings::at_speed(20.0) };
+        let settings = Settings { beta, step, tail: Tail::Fixed(tail), ..Settings::at_speed(20.0) };
         run(&bridge, &vehicle, &settings, 6, &undamped(), ForceSummation, &[0.0])
     };
     let refused = with(1.0 / 6.0, Some(1.0), 0.0).map(|_| ()).unwrap_err();
@@ -180,7 +180,12 @@ fn the_tail_adds_to_the_extremes() {
     let bridge = kishan_bridge();
     for drive in [Drive::ConstantSpeed, Drive::ConstantTraction] {
         let with = |tail: f64| {
-            let settings = Settings { drive: drive.clone(), tail, step: Some(1e-3), ..Settings::at_speed(40.0) };
+            let settings = Settings {
+                drive: drive.clone(),
+                tail: Tail::Fixed(tail),
+                step: Some(1e-3),
+                ..Settings::at_speed(40.0)
+            };
             run(&bridge, &kishan_vehicle(), &settings, 3, &undamped(), ForceSummation, &[]).unwrap()
         };
         let [none, long] = [0.0, 1.2345].map(with);
@@ -272,7 +277,7 @@ fn refusals() {
         ("speed", Settings { speed: 0.0, ..good.clone() }),
         ("speed", Settings { speed: f64::NAN, ..good.clone() }),
         ("approach", Settings { approach: -1.0, ..good.clone() }),
-        ("tail", Settings { tail: f64::INFINITY, ..good.clone() }),
+        ("tail", Settings { tail: Tail::Fixed(f64::INFINITY), ..good.clone() }),
         ("gravity", Settings { gravity: 0.0, ..good.clone() }),
         ("step", Settings { step: Some(0.0), ..good.clone() }),
         ("step", Settings { step: Some(1e-9), ..good.clone() }),

@@ -16,7 +16,7 @@ use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{BLOCK, Study};
 use spanwise::recovery::Recovery;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
@@ -60,10 +60,11 @@ fn nothing_about_the_work_changes_a_bit_of_a_mixed_study() {
     let (results, layout) = (&found.results, found.results.layout);
     let lifted = |sample: usize| row(results, sample).1[2 * (layout.responses + layout.axles)..].iter().any(|&n| n > 0);
     let lifting = (0..samples.count).filter(|&sample| lifted(sample)).count();
-    println!("{lifting} of {} lift off; steps halved {:?} times", samples.count, found.refinements);
+    let halvings: Vec<u32> = found.clock.paces.iter().map(|pace| pace.halvings).collect();
+    println!("{lifting} of {} lift off; steps halved {halvings:?} times", samples.count);
     assert!(lifting > 5, "{lifting}");
     // Both kinds with and without halved steps.
-    assert!(found.refinements.len() >= 4, "{:?}", found.refinements);
+    assert!(halvings.len() >= 4, "{halvings:?}");
     check_ways(&study, &samples, &[0, 1, 2, 33, 69]);
     check_alone(&study, &samples, &found, "mixed");
 }
@@ -106,7 +107,7 @@ fn check_study(name: &str, bridge: &Bridge, vehicle: &Vehicle, recovery: Recover
     let analysis = analysis_of(bridge, modes, &damping, &[], recovery);
     let approach = if variant.is_multiple_of(2) { 0.0 } else { 11.0 };
     let ramp = if variant % 4 == 3 { 4.0 } else { 0.0 };
-    let tail = [0.0, 0.13, 0.4][variant % 3];
+    let tail = [Tail::Fixed(0.0), Tail::Free, Tail::Fixed(0.13), Tail::Free, Tail::Fixed(0.4)][variant % 5];
     let road = if variant % 5 == 4 { Arc::new(bump(0.3 * bridge.length())) } else { Settings::at_speed(1.0).road };
     let own = (variant % 7 != 6).then(|| (roads(POOR), 3));
     let settings = Settings { approach, ramp, tail, road, ..Settings::at_speed(SPEED) };
@@ -151,7 +152,7 @@ fn a_sample_with_its_own_factors_is_a_crossing() {
         let damping = Damping::Rayleigh { mass: 0.4, stiffness: 5e-4 };
         let analysis = analysis_of(&problems::two_spans(4), 4, &damping, &[], recovery);
         let kinds = vec![vec![Passage::of(articulated(1.0, 1.0))]];
-        let settings = Settings { approach: 8.0, tail: 0.2, ..Settings::at_speed(SPEED) };
+        let settings = Settings { approach: 8.0, tail: Tail::Fixed(0.2), ..Settings::at_speed(SPEED) };
         let study = Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), None, &ALL).unwrap();
         let count = 11;
         let factors = Parameter::ALL.into_iter().enumerate().filter_map(|(p, parameter)| {
@@ -214,7 +215,7 @@ fn several_vehicles_are_a_crossing_each() {
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
     let second = Passage { entry: 0.8, ..Passage::of(hs20(1.0)) };
     let kinds = vec![vec![Passage::of(kishan_vehicle()), second], vec![Passage::of(kishan_vehicle())]];
-    let settings = Settings { tail: 0.2, ..approach() };
+    let settings = Settings { tail: Tail::Fixed(0.2), ..approach() };
     let study = Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), None, &ALL).unwrap();
     assert!(!study.shares);
     let kinds = (0..10).map(|i| i % 2).collect();

@@ -18,7 +18,7 @@ use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;
@@ -52,7 +52,7 @@ fn extremes(quantity: Quantity, advance: f64) -> Vec<f64> {
     let speeds: Vec<f64> = vec![13.0, 17.0, 21.0, 26.0, 29.0, 33.0];
     let samples = Samples { count: speeds.len(), speeds, ..Samples::at_speed(0, 1, 1.0) };
     let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
-    assert!(found.refinements == [0], "halved on its own");
+    assert!(found.clock.paces.len() == 1 && found.clock.paces[0].halvings == 0, "halved on its own");
     (0..samples.count).flat_map(|sample| column(&found.results, sample, Column::Responses).to_vec()).collect()
 }
 
@@ -79,7 +79,7 @@ fn extremes_are_of_second_order() {
 
 /// A tail in seconds is so for every speed: slow lanes and fast ones side by side end at different steps, some amid one.
 fn tail(tail: f64, recovery: Recovery) -> Study {
-    let settings = Settings { approach: 5.0, tail, ..Settings::at_speed(1.0) };
+    let settings = Settings { approach: 5.0, tail: Tail::Fixed(tail), ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(kishan_vehicle())]];
     Study::new(kishan_analysis(9, recovery), kinds, settings, Some((synthesis(), SEED)), Some(0.05), &ALL).unwrap()
 }
@@ -118,7 +118,7 @@ fn no_extreme_in_the_tail_is_that_of_a_neighbour() {
 #[test]
 fn peaks_of_the_tail_are_found() {
     let vehicle = sprung_mass(2e3, 1e6);
-    let settings = Settings { tail: 1.0, ..Settings::at_speed(1.0) };
+    let settings = Settings { tail: Tail::Fixed(1.0), ..Settings::at_speed(1.0) };
     let study =
         Study::new(analysis(5, 0.0), vec![vec![Passage::of(vehicle)]], settings, None, Some(0.05), &ALL).unwrap();
     let speeds = vec![60.0, 80.0, 100.0, 120.0];
@@ -128,14 +128,14 @@ fn peaks_of_the_tail_are_found() {
     let mut late = 0;
     for sample in 0..samples.count {
         let (_, instants) = row(&found.results, sample);
-        let steps = found.tables[found.results.marches[sample] as usize].path.steps;
+        let steps = found.clock.paces[found.results.marches[sample] as usize].steps;
         late += instants[..2 * layout.responses].iter().filter(|&&i| stop_or_step(i).is_err_and(|s| s > steps)).count();
     }
     println!("{late} extremes in the tails");
     assert!(late >= 20, "{late}");
     check_alone(&study, &samples, &found, "tail");
     // Without a tail they are not seen, and what is seen with it is never less.
-    let without = Settings { tail: 0.0, ..study.settings.clone() };
+    let without = Settings { tail: Tail::Fixed(0.0), ..study.settings.clone() };
     let kinds = vec![study.kinds[0].passages.clone()];
     let short = Study::new(Arc::clone(&study.analysis), kinds, without, None, Some(0.05), &ALL).unwrap();
     let shorter = run(&short, &samples, Isa::chosen().unwrap(), 1);

@@ -12,7 +12,7 @@ use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;
 use spanwise::recovery::Recovery;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
 
 const COUNT: usize = 41;
@@ -21,7 +21,7 @@ const COUNT: usize = 41;
 const BAD: [usize; 5] = [0, 9, 10, 17, 40];
 
 fn study(vehicle: Vehicle, tail: f64) -> Study {
-    let settings = Settings { approach: 6.0, tail, ..Settings::at_speed(1.0) };
+    let settings = Settings { approach: 6.0, tail: Tail::Fixed(tail), ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(vehicle)]];
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
     Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap()
@@ -90,7 +90,7 @@ fn a_vehicle_that_cannot_be() {
 fn a_step_that_is_not_finite() {
     let study = study(Vehicle::moving_masses(&[500.0], &[0.0]).unwrap(), 0.3);
     let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
-    let advance = run(&study, &of(1.0), Isa::Scalar, 1).tables[0].path.advance;
+    let advance = run(&study, &of(1.0), Isa::Scalar, 1).clock.paces[0].advance;
     for failure in check(&study, &of(1e304), &of(1.0)) {
         let Error::NotFinite { time, position, .. } = failure.cause else { panic!("{:?}", failure.cause) };
         let step = failure.step.unwrap();

@@ -20,7 +20,7 @@ use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
 
 prop_compose! {
@@ -112,7 +112,9 @@ prop_compose! {
         own in prop_oneof![Just(None), Just(Some(64e-6)), Just(Some(4096e-6))],
         approach in prop_oneof![Just(0.0), 0.5..15.0_f64],
         ramped in any::<bool>(),
-        tail in prop_oneof![Just(0.0), 1e-4..0.5_f64],
+        tail in prop_oneof![
+            Just(Tail::Free), Just(Tail::Fixed(0.0)), (1e-4..0.5_f64).prop_map(Tail::Fixed)
+        ],
         beta in prop_oneof![Just(1.0 / 6.0), Just(0.25), Just(1.0 / 12.0)],
         advance in prop_oneof![Just(None), (0.03..0.4_f64).prop_map(Some)],
         quantities in prop::sample::subsequence(ALL.to_vec(), 1..=6),
@@ -222,11 +224,12 @@ fn check(case: Case) -> Result<(), TestCaseError> {
         // The largest is not less than the smallest, and every instant is one.
         let sides = column(results, sample, Column::Responses).split_at(layout.responses);
         prop_assert!(sides.0.iter().zip(sides.1).all(|(max, min)| max >= min));
-        let table = &found.tables[results.marches[sample] as usize];
-        let last = table.path.steps as f64 + study.settings.tail * samples.speed(sample, 0) / table.path.advance + 1.0;
+        let pace = &found.clock.paces[results.marches[sample] as usize];
+        let tail = column(results, sample, Column::Tail)[0];
+        let last = pace.steps as f64 + tail * samples.speed(sample, 0) / pace.advance + 1.0;
         for &instant in &instants[..2 * layout.responses] {
             let known = match stop_or_step(instant) {
-                Ok(stop) => stop < table.stops.len(),
+                Ok(stop) => stop < pace.stops.len(),
                 Err(step) => step as f64 <= last,
             };
             prop_assert!(known, "instant {}", instant);

@@ -18,7 +18,7 @@ use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Sums of some thousand numbers in another order, relative.
@@ -34,12 +34,12 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
     let length = study.analysis.rows.mesh().length();
     let (mut lifts, mut at_the_end) = (0, 0);
     for sample in 0..samples.count {
-        let table = &found.tables[results.marches[sample] as usize];
-        let single = alone(study, samples, sample, table.path.advance).unwrap();
+        let pace = &found.clock.paces[results.marches[sample] as usize];
+        let single = alone(study, samples, sample, pace.advance).unwrap();
         let (history, axles) = (&single.history, single.history.axles);
         let on_bridge = |i: &usize| history.positions[i * axles..][..axles].iter().any(|x| (0.0..=length).contains(x));
         let first = (0..history.len()).find(on_bridge).unwrap();
-        let there = first..table.path.steps + 1;
+        let there = first..pace.steps + 1;
         let count = there.len() as f64;
         let near = |what: &str, value: f64, expected: f64, scale: f64| {
             let off = (value - expected).abs();
@@ -53,19 +53,19 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
             near("load coefficient", column(results, sample, Column::LoadCoefficients)[k], coefficient, coefficient);
             // In the air from an instant to the next if the load is zero at the first of them.
             let off = |i: usize| load(i) == 0.0;
-            let aloft = (1..history.len()).filter(|&i| off(i - 1)).map(|i| history.time[i] - history.time[i - 1]);
+            let aloft = (1..=history.last_on).filter(|&i| off(i - 1)).map(|i| history.time[i] - history.time[i - 1]);
             near("time aloft", column(results, sample, Column::Aloft)[k], aloft.sum(), 1.0);
-            let lift_offs = (0..history.len()).filter(|&i| off(i) && (i == 0 || !off(i - 1))).count();
+            let lift_offs = (0..=history.last_on).filter(|&i| off(i) && (i == 0 || !off(i - 1))).count();
             let (_, instants) = row(results, sample);
             assert_eq!(instants[2 * (layout.responses + layout.axles) + k] as usize, lift_offs, "{name}, {sample}");
             lifts += lift_offs;
-            at_the_end += usize::from(off(history.len() - 1));
+            at_the_end += usize::from(off(history.last_on));
         }
         for (b, [heave, _]) in single.vehicle.assembly().bodies.iter().enumerate() {
             let width = history.motion_width();
             let acceleration =
                 |i: usize| (0..heave.len()).map(|q| heave[q] * history.motion[i * width + 3 * q + 2]).sum::<f64>();
-            let largest = (0..history.len()).map(|i| acceleration(i).abs()).fold(0.0, f64::max);
+            let largest = (0..=history.last_on).map(|i| acceleration(i).abs()).fold(0.0, f64::max);
             let mean = there.clone().map(|i| acceleration(i).powi(2)).sum::<f64>() / count;
             near("acceleration", column(results, sample, Column::Accelerations)[b], largest, largest);
             near("vibration", column(results, sample, Column::Vibrations)[b], mean.sqrt(), mean.sqrt());
@@ -101,20 +101,20 @@ fn statistics_are_those_of_the_history() {
     // Forces have no bodies.
     let forces = Vehicle::force_train(&[9e4, 1.2e5], &[0.0, -3.5]).unwrap();
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
-    let settings = Settings { tail: 0.3, ..approach() };
+    let settings = Settings { tail: Tail::Fixed(0.3), ..approach() };
     let study = Study::new(analysis, vec![vec![Passage::of(forces)]], settings, None, None, &ALL).unwrap();
     let found = run(&study, &samples(3), Isa::Scalar, 1).results;
     assert_eq!(found.layout.bodies, 0);
     assert!(column(&found, 1, Column::LoadCoefficients).iter().all(|&v| v == 0.0));
 }
 
-/// A wheel that is in the air when all ends is so until then and no longer; with a tail that ends amid a step, too.
+/// A wheel that is in the air when the last axle has left the bridge counts until then and no longer, whatever the tail.
 #[test]
 fn time_aloft_ends_with_the_crossing() {
     let mut late = 0;
     for (seconds, approach) in [(0.0, 2.0), (0.0317, 3.0), (1e-4, 2.0), (0.05, 2.0)] {
         let light = half_car([700.0, 1100.0], 0.3, 0.0, Friction::NONE);
-        let settings = Settings { approach, tail: seconds, ..Settings::at_speed(1.0) };
+        let settings = Settings { approach, tail: Tail::Fixed(seconds), ..Settings::at_speed(1.0) };
         let analysis = kishan_analysis(5, Recovery::ForceSummation);
         let kinds = vec![vec![Passage::of(light)]];
         let study = Study::new(analysis, kinds, settings, Some((roads(16384e-6), SEED)), Some(0.05), &ALL).unwrap();
@@ -148,7 +148,7 @@ fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::analys
 /// Samples of which each has its factor, against studies of vehicle and bridge built with it.
 #[test]
 fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
-    let settings = Settings { approach: 10.0, tail: 0.2, ..Settings::at_speed(20.0) };
+    let settings = Settings { approach: 10.0, tail: Tail::Fixed(0.2), ..Settings::at_speed(20.0) };
     let made = |analysis: Arc<spanwise::analysis::Analysis>, vehicle: Vehicle| {
         let own = Some((synthesis(), SEED));
         Study::new(analysis, vec![vec![Passage::of(vehicle)]], settings.clone(), own, Some(0.02), &ALL).unwrap()
@@ -253,12 +253,12 @@ fn halvings_are_a_function_of_the_sample_alone() {
             let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
             assert!(found.results.failures.is_empty(), "{name}: {:?}", found.results.failures);
             let halved =
-                |run: &spanwise::ensemble::Run, sample: usize| run.refinements[run.results.marches[sample] as usize];
+                |run: &spanwise::ensemble::Run, i: usize| run.clock.paces[run.results.marches[i] as usize].halvings;
             assert!((0..count).any(|sample| halved(&found, sample) > 0), "{name}: nobody is slow");
             for sample in 0..count {
                 let own = run(&study, &some(&samples, sample..sample + 1), Isa::Scalar, 1);
                 assert_eq!(halved(&own, 0), halved(&found, sample), "{name}, sample {sample}");
-                let way = found.tables[found.results.marches[sample] as usize].path.advance;
+                let way = found.clock.paces[found.results.marches[sample] as usize].advance;
                 let (taken, limit) = (way / samples.speed(sample, 0), stability_limit(&study, &samples, sample));
                 assert!(taken <= limit * (1.0 + 1e-8), "{name}, sample {sample}: {taken} s, stable up to {limit} s");
                 assert!(step.is_none_or(|step| taken <= step * (1.0 + 1e-8)), "{name}, sample {sample}: {taken} s");

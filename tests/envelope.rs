@@ -7,7 +7,7 @@ use spanwise::bridge::Bridge;
 use spanwise::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 
 /// Two evaluations of one response, relative to its largest value.
 const ROUNDING: f64 = 1e-12;
@@ -17,7 +17,7 @@ const BETWEEN_STEPS: f64 = 2e-2;
 
 fn crossed(bridge: &Bridge, recovery: Recovery) -> Run {
     // Every millisecond; stable in four modes of every bridge here.
-    let settings = Settings { step: Some(1e-3), approach: 0.5, tail: 0.1, ..Settings::at_speed(23.1) };
+    let settings = Settings { step: Some(1e-3), approach: 0.5, tail: Tail::Fixed(0.1), ..Settings::at_speed(23.1) };
     run(bridge, &kishan_vehicle(), &settings, 4, &undamped(), recovery, &[]).unwrap()
 }
 

@@ -6,7 +6,7 @@ use problems::*;
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 
 /// Two evaluations of one shear, relative to its largest value.
 const ROUNDING: f64 = 1e-10;
@@ -51,7 +51,7 @@ fn extremes_settle_with_the_step() {
 fn shear_at_the_tip_is_that_beside_it() {
     for mirrored in [false, true] {
         let bridge = cantilever(mirrored);
-        let settings = Settings { step: Some(5e-4), tail: 0.2, ..Settings::at_speed(20.0) };
+        let settings = Settings { step: Some(5e-4), tail: Tail::Fixed(0.2), ..Settings::at_speed(20.0) };
         let sections = if mirrored { [0.0, 0.001] } else { [9.999, 10.0] };
         let run = run(&bridge, &kishan_vehicle(), &settings, 4, &undamped(), ForceSummation, &sections).unwrap();
         let (history, [dynamic, _]) = (&run.outcome.history, &run.responded);
@@ -95,11 +95,11 @@ fn tails_of_any_length() {
     let h = short.outcome.history.step;
     for steps in [1.0, 2.0, 7.0, 100.0] {
         for excess in [-1e-9, -0.999_999_9e-9, 0.0, 0.999_999_9e-9, 1e-9, 0.5] {
-            let settings = Settings { tail: h * (steps + excess), ..settings.clone() };
+            let settings = Settings { tail: Tail::Fixed(h * (steps + excess)), ..settings.clone() };
             let run =
                 run(&kishan_bridge(), &kishan_vehicle(), &settings, 1, &undamped(), ForceSummation, &[9.0]).unwrap();
             let history = &run.outcome.history;
-            let end = short.outcome.history.time.last().unwrap() + settings.tail;
+            let end = short.outcome.history.time.last().unwrap() + settings.tail.seconds().unwrap();
             assert!((history.time.last().unwrap() - end).abs() <= 2e-9 * h, "{:?} for {end}", history.time.last());
         }
     }

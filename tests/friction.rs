@@ -6,7 +6,7 @@ use problems::*;
 use spanwise::assembly::Friction;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Two descriptions of the same vehicle, relative to the largest value.
@@ -21,7 +21,7 @@ fn vehicle(change: impl Fn(&mut Axle)) -> Vehicle {
 }
 
 fn crossed(vehicle: &Vehicle) -> Run {
-    let settings = Settings { tail: 0.2, ..kishan_settings() };
+    let settings = Settings { tail: Tail::Fixed(0.2), ..kishan_settings() };
     run(&kishan_bridge(), vehicle, &settings, 3, &undamped(), ForceSummation, &[]).unwrap()
 }
 

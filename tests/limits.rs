@@ -15,7 +15,7 @@ use spanwise::friction::{Law, Stroke};
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::{ForceSummation, Superposition};
 use spanwise::road::Road;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
 
 /// Two descriptions of the same thing, relative to its largest value.
@@ -200,7 +200,7 @@ fn leaf_springs_in_any_number_of_steps() {
 /// Two linear vehicles act on each other through the bridge; constant forces do not.
 #[test]
 fn opposing_vehicles_superpose_as_they_become_light() {
-    let settings = Settings { tail: 0.3, ..settings(25.0, 1e-3) };
+    let settings = Settings { tail: Tail::Fixed(0.3), ..settings(25.0, 1e-3) };
     // Both, or one while a force next to nothing takes the place of the other, so that all take the same steps.
     let meeting = |vehicles: &[Vehicle; 2], which: [bool; 2]| -> Vec<f64> {
         let nothing = Vehicle::force_train(&[1e-12], &[0.0]).unwrap();
@@ -261,7 +261,7 @@ fn mirrored_bridges_and_directions() {
                 drive: drive.clone(),
                 approach: 12.0,
                 ramp: 6.0,
-                tail: 0.2,
+                tail: Tail::Fixed(0.2),
                 step: Some(1e-3),
                 road: Arc::new(road.clone()),
                 beta: 0.25,
@@ -323,7 +323,7 @@ fn mirrored_bridges_and_directions() {
 #[test]
 fn a_convoy_is_a_train() {
     let speed = 24.0;
-    let settings = Settings { tail: 0.1, ..settings(speed, 1e-3) };
+    let settings = Settings { tail: Tail::Fixed(0.1), ..settings(speed, 1e-3) };
     let gap = 12.0;
     for kind in ["forces", "masses"] {
         let of = |values: &[f64], positions: &[f64]| match kind {

@@ -12,7 +12,7 @@ use spanwise::damping::Damping;
 use spanwise::influence::Quantity;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
@@ -294,7 +294,7 @@ fn a_vehicle_that_stops_on_the_bridge() {
             ("history", Drive::Speeds { times: vec![1.0, 3.0, 4.0], speeds: vec![20.0, 18.0, 0.0] }),
         ] {
             let approach = if name == "history" { 58.0 } else { 50.0 };
-            let settings = Settings { approach, tail: 40.0, step: Some(2e-3), ..settings(drive) };
+            let settings = Settings { approach, tail: Tail::Fixed(40.0), step: Some(2e-3), ..settings(drive) };
             let passage = Passage { direction, ..Passage::of(vehicle.clone()) };
             let damping = Damping::Ratios(vec![0.05]);
             let sections = [0.3 * SPAN, 0.5 * SPAN];
@@ -406,7 +406,7 @@ fn rocking_about_standing_wheels() {
         .into_iter()
         .map(|step| {
             let drive = braking(4.0, -45.0, 0.5, 0.9);
-            let settings = Settings { approach: 50.0, tail: 3.0, step: Some(step), ..settings(drive) };
+            let settings = Settings { approach: 50.0, tail: Tail::Fixed(3.0), step: Some(step), ..settings(drive) };
             let run = run(&bridge(1.0), &vehicle, &settings, 3, &undamped(), ForceSummation, &[0.5 * SPAN]).unwrap();
             let history = &run.outcome.history;
             let mut stored = Budget::of(&run, &vehicle, &Road::smooth(), 0.0, true).stored;

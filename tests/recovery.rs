@@ -11,7 +11,7 @@ use spanwise::influence::Quantity;
 use spanwise::modes::Modes;
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
 use spanwise::sequence::{Recovered, Sequence};
-use spanwise::settings::Settings;
+use spanwise::settings::{Settings, Tail};
 
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;
@@ -35,7 +35,8 @@ fn sections(bridge: &Bridge) -> Vec<f64> {
 
 fn crossed(bridge: &Bridge, modes: usize, damping: &Damping, recovery: Recovery) -> Run {
     // Average acceleration: any step is stable, and these identities do not ask for a fine one.
-    let settings = Settings { step: Some(4e-3), beta: 0.25, approach: 1.0, tail: 0.1, ..Settings::at_speed(21.7) };
+    let settings =
+        Settings { step: Some(4e-3), beta: 0.25, approach: 1.0, tail: Tail::Fixed(0.1), ..Settings::at_speed(21.7) };
     run(bridge, &kishan_vehicle(), &settings, modes, damping, recovery, &sections(bridge)).unwrap()
 }
 

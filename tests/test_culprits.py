@@ -133,5 +133,5 @@ def test_equal_shares_keep_their_steps() -> None:
     """A hundredth of the half share at the supports, however long the spans are."""
     bridge = sw.Bridge(spans=[8.0, 80.0], EI=1.9e11, mass=6e3)
     truck = sw.ForceTrain(loads=[1e4])
-    run = sw.cross(bridge, truck, modes=1, **GIVEN)
+    run = sw.cross(bridge, truck, modes=1, **GIVEN, tail=0.0)
     assert run.steps == round(88.0 / 0.004)

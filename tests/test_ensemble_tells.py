@@ -31,6 +31,7 @@ def rough() -> sw.Ensemble:
         factors={"body_mass": np.linspace(0.7, 1.1, SAMPLES)},
         approach=20.0,
         ramp=5.0,
+        tail=0.0,
     )
 
 

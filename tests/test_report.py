@@ -51,7 +51,7 @@ def again(settings: dict[str, Any]) -> sw.Run:
 def test_keys(report: dict[str, Any]) -> None:
     assert set(report) == {
         *("version", "settings", "sections", "supports", "frequencies", "damping", "final_speed"),
-        *("steps", "vehicles", "lift_offs", "impact_factors", "clamp_moments", *QUANTITIES),
+        *("steps", "tail", "vehicles", "lift_offs", "impact_factors", "clamp_moments", *QUANTITIES),
     }
     assert report["version"] == sw.__version__
     assert set(report["settings"]) == {"bridge", "vehicle", "road", "crossing"}
@@ -420,7 +420,7 @@ def test_devices_are_not_replaced(run: sw.Run) -> None:
 
 def test_the_summary_of_a_run() -> None:
     bridge = sw.Bridge(spans=[18.0, 18.0], EI=1.9e9, mass=6e3, stations_per_span=3)
-    run = sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0, modes=3)
+    run = sw.cross(bridge, sw.vehicles.kishan_1973(), speed=20.0, modes=3, tail=0.0)
     text = run.summary()
     assert text.endswith(str(run.impact_factors))
     assert run._repr_html_().startswith("<pre>bridge    36 m, ")

@@ -75,6 +75,7 @@ def against_crossings(peer: Peer, numbers: tuple[int, ...]) -> tuple[float, floa
             drive="constant-speed",
             approach=APPROACH,
             ramp=RAMP,
+            tail=0.0,
             road=road(number % ROADS),
             step=peer.tables.h * (1.0 + 1e-12),
             sections=SECTIONS.tolist(),
@@ -135,6 +136,7 @@ def engine(samples: int) -> Any:
         approach=APPROACH,
         ramp=RAMP,
         advance=ADVANCE,
+        tail=0.0,
         sections=SECTIONS.tolist(),
         threads=THREADS,
     )

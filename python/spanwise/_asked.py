@@ -51,7 +51,7 @@ def recipe_of(
     damping: Damping | None,
     approach: float | None,
     ramp: float | None,
-    tail: float,
+    tail: float | None,
     sections: Sequence[float] | None,
     quantities: Sequence[Quantity] | None,
     recovery: Recovery,
@@ -137,11 +137,23 @@ def recipe_of(
     return recipe, speeds
 
 
+def known(bridge: Bridge) -> list[Quantity]:
+    """What can be looked at: all that the bridge did not come without."""
+    names: tuple[Quantity, ...] = get_args(Quantity)
+    return [name for name in names if NAMES.get(name, name) not in bridge.missing]
+
+
+def all_quantities(bridge: Bridge) -> list[Quantity]:
+    """What there is to look at; without a clamp no moments of clamps."""
+    clamped = len(bridge.clamps) > 0
+    return [name for name in known(bridge) if clamped or name != "clamp_moments"]
+
+
 def _quantities(bridge: Bridge, given: object) -> list[Quantity]:
     """What is looked at, in the order of the responses."""
     names: tuple[Quantity, ...] = get_args(Quantity)
     clamped = len(bridge.clamps) > 0
-    there = [name for name in names if NAMES.get(name, name) not in bridge.missing]
+    there = known(bridge)
     if given is None:
         return [name for name in there if clamped or name != "clamp_moments"]
     if not isinstance(given, list | tuple) or not given:

@@ -61,7 +61,7 @@ class Conditions(Value):
         damping: Damping | None,
         approach: float | None,
         ramp: float | None,
-        tail: float,
+        tail: float | None,
         sections: Sequence[float] | None,
         recovery: Recovery,
         step: float | None,
@@ -87,7 +87,8 @@ class Conditions(Value):
             damping = items("damping", damping)
         ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
         beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
-        approach, tail, mask = number("approach", approach), number("tail", tail), masked(mask)
+        approach, mask = number("approach", approach), masked(mask)
+        tail = None if tail is None else number("tail", tail)
         common = {
             "approach": approach,
             "ramp": ramp,

@@ -209,6 +209,13 @@ class Crossing:
     @property
     def steps(self) -> int: ...
     @property
+    def tail(self) -> float: ...
+    @property
+    def settled(self) -> bool: ...
+    @property
+    def growth(self) -> float: ...
+    def reach(self, name: str) -> NDArray[np.float64] | None: ...
+    @property
     def final_speeds(self) -> list[float]: ...
     @property
     def stopped(self) -> list[float | None]: ...
@@ -246,7 +253,7 @@ def cross(
     step: float | None,
     approach: float,
     ramp: float,
-    tail: float,
+    tail: float | None,
     gravity: float,
     lift_off: bool,
     sections: list[float] | None,
@@ -327,7 +334,7 @@ def ensemble(
     advance: float | None,
     approach: float,
     ramp: float,
-    tail: float,
+    tail: float | None,
     gravity: float,
     lift_off: bool,
     sections: list[float] | None,

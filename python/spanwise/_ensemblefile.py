@@ -211,6 +211,7 @@ def settings(ensemble: Ensemble) -> dict[str, Any]:
 def as_dict(ensemble: Ensemble) -> dict[str, Any]:
     """Main figures as plain values: percentiles of impact factors and of extremes."""
     sound = ~np.isnan(ensemble.envelope("axle_loads").max).all(axis=1)
+    tails = ensemble.tail[np.isfinite(ensemble.tail)]
     found: dict[str, Any] = {
         "samples": ensemble.samples,
         "seed": ensemble.seed,
@@ -226,6 +227,11 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
             {"sample": each.sample, "step": each.step, "cause": each.cause}
             for each in ensemble.failures
         ],
+        "tail": {
+            "shortest": tails.min() if len(tails) else None,
+            "longest": tails.max() if len(tails) else None,
+            "samples_that_can_grow": int((ensemble.growth > 0.0).sum()),
+        },
         "percentiles": [*PERCENTILES],
         "extremes": {},
         "impact_factors": {},

@@ -100,9 +100,10 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
     if ensemble.samples > 1 and _alike(recipe):
         yield "note      all samples are alike: nothing is random"
     yield (
-        f"crossing  approach {settings['approach']:g} m, tail {settings['tail']:g} s; recovery by "
-        f"{settings['recovery']}; {len(ensemble.sections)} sections"
+        f"crossing  approach {settings['approach']:g} m; recovery by {settings['recovery']}; "
+        f"{len(ensemble.sections)} sections"
     )
+    yield from _tail(ensemble)
     yield f"step      {_step(ensemble)}"
     way = (
         "side by side, for they share their geometry"
@@ -115,6 +116,26 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
         f"{ensemble.threads} thread{'s' if ensemble.threads > 1 else ''}, {ensemble.isa}"
     )
     yield f"hash      {ensemble.hash}"
+
+
+def _tail(ensemble: Ensemble) -> Iterator[str]:
+    """How long the free vibration was kept, and in how many samples not long enough."""
+    tails = ensemble.tail[np.isfinite(ensemble.tail)]
+    why = ", until no extreme can follow" if ensemble.settings.get("tail") is None else ""
+    if len(tails):
+        yield f"          tail {_span(tails, '.4g')} s{why}"
+    growths = np.nan_to_num(ensemble.growth)
+    if not (early := int((growths > 0.0).sum())):
+        return
+    row = int(np.argmax(growths))
+    yield (
+        f"note      in {_many(early)} free vibration after the end can exceed an extreme by more "
+        "than 1 %,"
+    )
+    yield (
+        f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)}, by "
+        f"{100.0 * growths[row]:.1f} % of the largest along the bridge"
+    )
 
 
 def _passage(passage: Passage) -> str:

@@ -158,8 +158,8 @@ class Recipe(Value):
                 pairs = zip(self.event(row), self.vehicles(row), strict=True)
                 yield tuple(replace(passage, vehicle=vehicle) for passage, vehicle in pairs)
 
-    def run(self, sample: int, rows: Rows) -> Run:
-        """The sample by a crossing of its own."""
+    def run(self, sample: int, rows: Rows, tail: float | None = None) -> Run:
+        """The sample by a crossing of its own, with this tail [s] if that was not given."""
         passages = []
         vehicles = self.vehicles(sample)
         for number, (passage, vehicle) in enumerate(zip(self.event(sample), vehicles, strict=True)):
@@ -170,6 +170,8 @@ class Recipe(Value):
         given: dict[str, Any] = {**self.conditions.core}
         matrix = given.pop("damping_matrix")
         given["damping"] = given["damping"] if matrix is None else matrix
+        if given["tail"] is None:
+            given["tail"] = tail
         speeds = self.front_speeds
         found = rows.step(sample, float(speeds[sample if len(speeds) > 1 else 0]))
         if found is not None:

@@ -28,8 +28,12 @@ def remarks(run: Run, vehicle: int) -> list[str]:
 
 
 def _comes_to(run: Run, vehicle: int, way: float) -> bool:
-    """Whether the front axle does, from the end of the bridge at which the vehicle enters [m]."""
-    x = run.vehicles[vehicle].axle_positions[:, 0]
+    """Whether the front axle does, from the end of the bridge at which the vehicle enters [m].
+
+    Before the tail, that is: what it does behind the bridge makes no difference.
+    """
+    before = run.time <= run.time[-1] - run.tail + run._core.step
+    x = run.vehicles[vehicle].axle_positions[before, 0]
     if run.passages[vehicle].direction == "right":
         return bool(x.max() >= way)
     return bool(run.bridge.length - x.min() >= way)

@@ -34,7 +34,7 @@ def cross(
     road: Road | None = None,
     approach: float | None = None,
     ramp: float | None = None,
-    tail: float = 0.0,
+    tail: float | None = None,
     sections: Sequence[float] | None = None,
     recovery: Recovery = "force-summation",
     step: float | None = None,
@@ -48,7 +48,8 @@ def cross(
     Each vehicle starts in static equilibrium with its front axle at the start of the approach; the
     bridge is at rest. The crossing ends when the last axle has left the bridge, or the last vehicle
     has come to a stop, and the tail is over. The results are those of the vehicles alone, without
-    the dead load of the bridge.
+    the dead load of the bridge. Extremes of axle loads and lift-offs are those until the last axle
+    has left the bridge, from the start of the approach on; histories go on to the end.
 
     Parameters
     ----------
@@ -78,7 +79,11 @@ def cross(
         Way on which the unevenness fades in at the start of the approach [m]; by default 20 m, or
         the approach if that is shorter. With 0 the vehicle starts at rest on the road it stands on.
     tail : float, optional
-        Free vibration kept after the last axle has left [s]. The maxima can lie in it.
+        Free vibration kept after the last axle has left, or the last vehicle has stopped [s]. The
+        maxima can lie in it: by default it lasts until none can, which a bound from the energies of
+        the modes tells to a thousandth of each extreme, but ten periods of the slowest included
+        mode at most, as also where a vehicle stands on the bridge. The road goes on under the
+        vehicles; where it was measured no further, at its last elevation.
     sections : sequence of float, optional
         Where to look [m], ascending. By default mass stations, supports and tenth points.
     recovery : {"force-summation", "force-summation-by-rates", "superposition"}, optional

@@ -48,7 +48,7 @@ def ensemble(
     damping: Damping | None = None,
     approach: float | None = None,
     ramp: float | None = None,
-    tail: float = 0.0,
+    tail: float | None = None,
     sections: Sequence[float] | None = None,
     quantities: Sequence[Quantity] | None = None,
     recovery: Recovery = "force-summation",
@@ -109,7 +109,8 @@ def ensemble(
     modes : int, optional
         Number of natural modes included, as for `cross`.
     drive, damping, approach, ramp, tail, recovery, beta, gravity, lift_off
-        As for `cross`.
+        As for `cross`; by default the tail of each sample is as long as it needs, for the
+        quantities and sections looked at.
     sections : sequence of float, optional
         Where to look [m], ascending, as for `cross`.
     quantities : sequence of str, optional

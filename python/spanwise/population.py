@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._asked import all_quantities
 from spanwise._checks import file_path, is_list, items, named, shown, whole
 from spanwise._conditions import masked
 from spanwise._recipe import Recipe
@@ -89,7 +90,7 @@ class BodyAccelerations(Value):
     Attributes
     ----------
     max : ndarray, shape (sample, body)
-        Largest magnitude over the whole crossing [m/s2].
+        Largest magnitude until the last axle has left the bridge, on the approach too [m/s2].
     rms : ndarray, shape (sample, body)
         Root mean square from the first axle on the bridge to the last off it [m/s2].
     """
@@ -356,7 +357,7 @@ class Ensemble:
             ``"deflection"`` down [m], ``"moment"`` sagging [N m], ``"shear"`` on both sides of the
             sections together [N], ``"shear_left"``, ``"shear_right"``, ``"reactions"`` up [N],
             ``"clamp_moments"`` of the supports of `Bridge.clamps` [N m] or ``"axle_loads"`` [N],
-            these over the whole crossing, the approach too, of all vehicles in their order.
+            until the last axle has left the bridge, the approach too, of all vehicles in order.
 
         Returns
         -------
@@ -414,6 +415,33 @@ class Ensemble:
     def static_axle_loads(self) -> Array:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
         return frozen(self._recipe.static_loads())
+
+    @property
+    def tail(self) -> Array:
+        """Free vibration kept after the last axle had left, or stood [s], shape (sample,)."""
+        return self._rows.block("tail")[:, 0]
+
+    @property
+    def growth(self) -> Array:
+        """How far free vibration after the end can exceed an extreme, shape (sample,).
+
+        As `Run.growth`: in parts of the largest of its kind along the bridge, of the extreme that
+        can grow most. Zero where none can by more than a hundredth of itself and a thousandth of
+        the largest; NaN where a vehicle stands on the bridge, and of samples that failed.
+        """
+        return self._rows.block("growth")[:, 0]
+
+    def _growing(self, row: int) -> str:
+        """The extreme of a sample that can grow most, in words."""
+        place, smallest = divmod(int(self._rows.block("growing")[row, 0]), 2)
+        for name in self._rows.widths:
+            start, width = self._rows.place(name)
+            if place < start + width:
+                break
+        places = {"reactions": self.supports, "clamp_moments": self.bridge.clamps}
+        x = places.get(name, self.sections)[place - start]
+        side = "smallest" if smallest else "largest"
+        return f"{side} {name.replace('_', ' ')} at x = {x:.3f} m"
 
     @property
     def load_coefficients(self) -> Array:
@@ -493,14 +521,20 @@ class Ensemble:
         RuntimeError
             If the sample is one that failed.
         """
-        row = self._row("sample", sample)
+        return self._run(self._row("sample", sample), None)
+
+    def _run(self, row: int, tail: float | None) -> Run:
+        """The sample of a row, with a tail so long if that of the ensemble was not given."""
         for each in self.failures:
             if each.row == row:
                 step = "" if each.step is None else f" in step {each.step}"
                 raise RuntimeError(
                     f"row {row}: sample number {each.sample} failed{step}: {each.cause}"
                 )
-        return self._recipe.run(row, self._rows)
+        if tail is None and len(self.quantities) < len(all_quantities(self.bridge)):
+            # As long as it was for what was looked at.
+            tail = float(self.tail[row])
+        return self._recipe.run(row, self._rows, tail)
 
     def _row(self, key: str, given: object) -> int:
         """A row that there is."""
@@ -526,7 +560,8 @@ class Ensemble:
         Returns
         -------
         ndarray, shape (samples, time, section)
-            Values in SI units; times are `Run.time` of `run`.
+            Values in SI units; times are `Run.time` of `run`. Where tails were not given, all are
+            as long as the longest of them.
 
         Raises
         ------
@@ -547,8 +582,9 @@ class Ensemble:
         else:
             raise ValueError(f"samples = {shown(samples)}: must be a row or a list of rows")
         found: Array | None = None
+        tail = max((float(self.tail[row]) for row in rows), default=0.0)
         for i, row in enumerate(rows):
-            values: Array = getattr(self.run(row), quantity)
+            values: Array = getattr(self._run(row, tail), quantity)
             if found is None:
                 size = len(rows) * values.nbytes
                 if size > MOST_BYTES:

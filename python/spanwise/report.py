@@ -47,6 +47,11 @@ def as_dict(run: Run) -> dict[str, Any]:
         "vehicles": [_vehicle(run, k) for k in range(len(run.passages))],
         "lift_offs": [asdict(each) for each in run.lift_offs],
         "steps": run.steps,
+        "tail": {
+            "length": run.tail,
+            "settled": run.settled,
+            "can_grow": [asdict(each) for each in run.can_grow],
+        },
         "impact_factors": _impact_factors(run),
         **{quantity: envelope(run, quantity) for quantity in quantities(run)},
     }

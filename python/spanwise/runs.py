@@ -15,6 +15,7 @@ from spanwise import _core
 from spanwise._checks import choice, named
 from spanwise._computed import Computed
 from spanwise._conditions import masked
+from spanwise._freevibration import Growth, growths
 from spanwise._value import Value, frozen, same
 from spanwise.bridge import Bridge
 from spanwise.roads import Road
@@ -373,8 +374,18 @@ class Run(Responses):
         Root mean square of each axle load about its static value, by that value [-].
     final_speed : float
         Speed of the first vehicle at the end [m/s].
+    tail : float
+        Free vibration that was kept after the last axle had left, or the last vehicle had
+        stopped [s].
+    settled : bool
+        Whether it ended because no extreme could follow; not so where the tail was given, and
+        where it was as long as may be.
+    growth : float
+        How far free vibration after the end can exceed an extreme, in parts of the largest of its
+        kind along the bridge; of the one of `can_grow` that can grow most, 0 if there is none, NaN
+        where a vehicle stands on the bridge.
     lift_offs : tuple of LiftOff
-        Every time a wheel was off the road, on the approach too.
+        Every time a wheel was off the road, on the approach too, until the last axle had left.
     off_road : OffRoad
         The same in numbers for each axle.
     axles : list of tuple of int
@@ -403,6 +414,9 @@ class Run(Responses):
         self.stopped: tuple[float | None, ...] = tuple(core.stopped)
         self.lift_offs = tuple(LiftOff(axle + 1, *span) for axle, *span in core.lift_offs)
         self.steps: int = core.steps
+        self.tail: float = core.tail
+        self.settled: bool = core.settled
+        self.growth: float = core.growth
 
     def __getstate__(self) -> dict[str, Any]:
         """Without what is worked out when asked for: the states of the crossing are enough."""
@@ -432,6 +446,15 @@ class Run(Responses):
             for number_, passage in enumerate(self.passages, 1)
             for axle in range(len(passage.vehicle.axle_positions))
         ]
+
+    @cached_property
+    def can_grow(self) -> tuple[Growth, ...]:
+        """Extremes that free vibration after the end can exceed by more than a hundredth.
+
+        Of each quantity and side the one that can grow most, if by more than a thousandth of the
+        largest along the bridge too. Where a vehicle stands on the bridge nothing is known.
+        """
+        return tuple(growths(self))
 
     @cached_property
     def off_road(self) -> OffRoad:
@@ -603,7 +626,8 @@ class Run(Responses):
         ``final_speed`` of the first vehicle [m/s]; ``vehicles``, for each its static axle loads
         [N], ``load_coefficients`` (by axle), ``final_speed``, ``stopped`` (time [s] and
         ``axle_positions`` [m], or None) and ``off_road`` (by axle); ``lift_offs``; ``steps``;
-        ``settings``, the tables of a case that computes the run again:
+        ``tail``, its ``length`` [s], whether it ``settled`` and what ``can_grow`` after it (see
+        `can_grow`); ``settings``, the tables of a case that computes the run again:
         ``Case.from_dict(settings).run()``.
         """
         from spanwise.report import as_dict

@@ -8,6 +8,7 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._freevibration import growth_in_words, tail_in_words
 from spanwise._remarks import remarks
 from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
@@ -50,10 +51,15 @@ def _description(run: Run) -> Iterator[str]:
     yield f"road      {road_in_words(run.road)}"
     ramp = f" ({used['ramp']:g} m of it to fade in the road)" if used["ramp"] else ""
     yield (
-        f"crossing  approach {used['approach']:g} m{ramp}, tail {used['tail']:g} s; {run.steps} "
-        f"steps of {used['step']:.4g} s, beta {used['beta']:.4g}"
+        f"crossing  approach {used['approach']:g} m{ramp}; {run.steps} steps of "
+        f"{used['step']:.4g} s, beta {used['beta']:.4g}"
     )
+    yield f"          {tail_in_words(run)}"
     yield f"          recovery by {used['recovery']}"
+    if run.can_grow:
+        yield "note      free vibration after the end can reach more than was recorded:"
+    for growth in run.can_grow:
+        yield f"          {growth_in_words(growth)}"
     for k in range(len(run.passages)):
         if (stopped := stop(run, k)) is not None:
             yield _standing(run, k, *stopped)

@@ -5,16 +5,15 @@ use std::sync::Arc;
 use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
-use crate::analysis::Analysis;
+use crate::analysis::Watching;
 use crate::course::Passage;
-use crate::crossing::{ModalBridge, cross_all};
+use crate::crossing::{ModalBridge, cross_watched};
 use crate::envelope::{Extremes, axle_loads};
 use crate::error::Error;
 use crate::history::History;
 use crate::modal::ModalDamping;
 use crate::road::Road;
 use crate::settings::Settings;
-use crate::survey::survey;
 use crate::vehicle::Vehicle;
 
 /// The bridge of a sample, and what its rows are to multiply A and Ȧ by.
@@ -93,7 +92,7 @@ pub fn cross(
         }
     };
     let settings = Settings { road, ..study.settings.clone() };
-    let Analysis { model, rows, responses, .. } = &*study.analysis;
+    let model = &study.analysis.model;
     let scaled = Scaled::of(model, samples, sample);
     let own_model;
     let model = match &scaled {
@@ -103,13 +102,10 @@ pub fn cross(
             &own_model
         }
     };
-    let mut history = cross_all(model, &passages, &settings, go_on)?;
-    if let Some(Scaled { stiffness, rates, .. }) = scaled {
-        history.a.iter_mut().for_each(|a| *a *= stiffness);
-        history.a_dot.iter_mut().for_each(|v| *v *= rates);
-    }
-    let packed = rows.pack_history(&history);
-    let envelope = survey(&history, rows, &packed, responses, go_on)?;
+    let factors = scaled.as_ref().map_or([1.0; 2], |scaled| [scaled.stiffness, scaled.rates]);
+    let mut watching = Watching::new(&study.analysis, &study.free, factors);
+    let mut history = cross_watched(model, &passages, &settings, &mut watching, go_on)?;
+    let (_, envelope) = watching.conclude(&mut history, go_on)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
     let chosen: Vec<(usize, f64)> = (study.look.chosen.iter().zip(&study.look.deflections))
@@ -121,6 +117,18 @@ pub fn cross(
         let range = layout.range(column);
         record.numbers[range.start + offset..range.end].iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     };
+    let last = history.len() - 1;
+    let [growth, place] = match &history.reach {
+        None => [f64::NAN; 2],
+        Some(reach) => {
+            let seen = |row: usize| {
+                let r = study.free.responses[row];
+                [envelope.dynamic.max[r].value, envelope.dynamic.min[r].value]
+            };
+            study.free.growth(&reach.clone().scaled(factors[0], factors[1]), seen, |row| study.look.place(row))
+        }
+    };
+    put(Column::Tail, 0, &mut [history.time[last] - history.ended, growth, place].into_iter());
     let (r, a) = (layout.responses, layout.axles);
     let sides = |extremes: &Extremes| [extremes.max.clone(), extremes.min.clone()];
     for (side, extremes) in sides(&envelope.dynamic).iter().enumerate() {
@@ -140,14 +148,13 @@ pub fn cross(
     let bodies = passages.iter().map(|passage| passage.vehicle.bodies().len()).sum();
     if !layout.is_finite(record.numbers, history.axles, bodies) {
         // No step shows it, but sums of squares do.
-        let last = history.len() - 1;
         let (time, position) = (history.time[last], history.positions[last * history.axles]);
         return Err(Error::NotFinite { step: last, time, position });
     }
     Ok(())
 }
 
-/// Contact forces and accelerations; means over [`History::on_bridge`].
+/// Contact forces and accelerations until the last vehicle has left the bridge; means over [`History::on_bridge`].
 fn ride(
     history: &History,
     length: f64,
@@ -174,7 +181,7 @@ fn ride(
                 let row = &history.motion[i * history.motion_width()..][columns.motion.clone()];
                 heave.iter().zip(row.iter().skip(2).step_by(3)).map(|(b, a)| b * a).sum()
             };
-            let largest = (0..history.len()).fold(0.0_f64, |m, i| m.max(acceleration(i).abs()));
+            let largest = (0..=history.last_on).fold(0.0_f64, |m, i| m.max(acceleration(i).abs()));
             let squares: f64 = there.clone().map(|i| acceleration(i).powi(2)).sum();
             put(Column::Accelerations, body, &mut std::iter::once(largest));
             put(Column::Vibrations, body, &mut std::iter::once((squares / count).sqrt()));

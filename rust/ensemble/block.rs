@@ -15,6 +15,7 @@ use crate::newmark::Coordinate;
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
 use crate::step::{State, Stepper, Unsettled};
+use crate::tail::{FreeRows, Reach, Vibration};
 
 /// Factors of one sample's bridge on what the rows multiply.
 #[derive(Debug, Clone, Copy)]
@@ -34,15 +35,19 @@ pub struct Ends<L> {
     pub fraction: L,
     /// Last step of the slowest lane.
     pub latest: usize,
+    /// Whether lanes end before that as soon as nothing can come any more.
+    pub free: bool,
 }
 
 impl<L: Lane> Ends<L> {
-    /// How much of the next step lanes still go: of the last step a part, and then nothing.
+    /// Ends lanes of a mask with this step, if they have not ended before; says which.
     #[inline(always)]
-    fn left(&self, step: usize) -> L {
-        let (now, next) = (L::splat(step as f64), L::splat(step as f64 + 1.0));
-        let next = L::select(next.less(self.last), L::splat(1.0), self.fraction);
-        L::select(now.less(self.last), next, L::splat(0.0))
+    fn end(&mut self, mask: L::Mask, step: usize) -> L::Mask {
+        let now = L::splat(step as f64);
+        let ending = !(!mask | self.last.less(now));
+        self.last = L::select(ending, now, self.last);
+        self.latest = (0..L::SAMPLES).map(|lane| self.last.get(lane) as usize).max().unwrap_or(step);
+        ending
     }
 }
 
@@ -79,13 +84,23 @@ pub struct Seen<L> {
     pub stops: Vec<Watched<L>>,
     /// Contact forces and accelerations.
     pub ride: Ride<L>,
+    /// What free vibration can reach after the last step of each lane.
+    pub reach: Option<Reach<L>>,
 }
 
 impl<L: Lane> Seen<L> {
     /// Nothing yet; but for a bridge that was at rest.
     pub fn nothing(rows: usize, axles: usize, bodies: usize, table: &Table) -> Self {
         let before = if table.first > 0 { Watched::rest() } else { Watched::nothing() };
-        Seen { steps: vec![before; rows], stops: vec![Watched::nothing(); rows], ride: Ride::nothing(axles, bodies) }
+        let (steps, stops) = (vec![before; rows], vec![Watched::nothing(); rows]);
+        Seen { steps, stops, ride: Ride::nothing(axles, bodies), reach: None }
+    }
+
+    /// Largest and smallest of a row.
+    #[inline(always)]
+    pub fn reached(&self, row: usize) -> [L; 2] {
+        let (at_step, at_stop) = (&self.steps[row], &self.stops[row]);
+        [at_step.max.larger(at_stop.max), at_step.min.smaller(at_stop.min)]
     }
 }
 
@@ -107,6 +122,8 @@ pub struct Way<'a> {
     pub rows: &'a Rows,
     /// The responses looked at.
     pub look: &'a Look,
+    /// The same without vehicles on the bridge.
+    pub free: &'a FreeRows,
     /// Whether to look for trouble after every step and not only after every chunk.
     pub closely: bool,
 }
@@ -155,6 +172,8 @@ struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
     static_loads: Vec<L>,
+    /// The bridge by itself.
+    vibration: Vibration<L>,
 }
 
 impl<L: Lane> Traveller<'_, '_, L> {
@@ -201,6 +220,16 @@ impl<L: Lane> Traveller<'_, '_, L> {
         for (b, a) in before.iter().zip(row) {
             let cut = *b + ends.fraction * (*a - *b);
             *a = L::select(ended, *b, L::select(short, cut, *a));
+        }
+    }
+
+    /// What free vibration can reach from here on, for the rows.
+    #[inline(always)]
+    fn reach(&mut self) -> Reach<L> {
+        let reach = self.vibration.reach(&self.state.modes);
+        match self.group.bridge {
+            None => reach,
+            Some(Bridge { coordinates, rates }) => reach.scaled(coordinates, rates),
         }
     }
 
@@ -280,6 +309,70 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
     }
 }
 
+/// Steps of the tail: the bridge by itself, once the vehicle is of no more concern, and what it can reach where lanes end.
+struct Swinging<'s, 'g, 'a, L> {
+    traveller: &'s mut Traveller<'g, 'a, L>,
+    reach: &'s mut Option<Reach<L>>,
+    rates: bool,
+    stretch: &'s mut Stretch<L>,
+    steps: Range<usize>,
+    /// The first of them in which the vehicle is not followed.
+    alone: usize,
+}
+
+impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Swinging { traveller, reach, rates, stretch, steps, alone } = self;
+        let widths = stretch.widths;
+        for step in steps {
+            if step >= alone {
+                traveller.vibration.swing(&mut traveller.state.modes);
+                let [before, row] = stretch.row_mut(step);
+                traveller.keep(row, &widths, rates, true);
+                traveller.end(step, [before, row]);
+            }
+            let (now, last) = (L::splat(step as f64), traveller.group.ends.last);
+            let ending = !(last.less(now) | now.less(last));
+            if L::any(ending) {
+                let own = traveller.reach();
+                if let Some(reach) = reach {
+                    reach.select(ending, &own);
+                }
+            }
+        }
+    }
+}
+
+/// The lanes being looked at whether something can still come, after a step with nobody on the bridge.
+struct Deciding<'s, 'g, 'a, L> {
+    traveller: &'s mut Traveller<'g, 'a, L>,
+    seen: &'s mut Seen<L>,
+    way: &'s Way<'s>,
+    step: usize,
+}
+
+impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Deciding { traveller, seen, way, step } = self;
+        let reach = traveller.reach();
+        if traveller.group.ends.free {
+            let load = traveller.static_loads.iter().fold(L::splat(0.0), |sum, load| sum + *load);
+            let settled = way.free.settled(&reach, load, |row| seen.reached(row));
+            let ending = traveller.group.ends.end(settled, step);
+            if let Some(seen) = &mut seen.reach {
+                seen.select(ending, &reach);
+            }
+        }
+        seen.reach.get_or_insert(reach);
+    }
+}
+
 /// The same chunk being looked at: all but the responses at its steps.
 struct Looking<'s, L> {
     seen: &'s mut Seen<L>,
@@ -302,9 +395,12 @@ impl<L: Lane> Work for Looking<'_, L> {
         let Looking { seen, way, ends, place, steps, stop, stretch, .. } = self;
         let widths = stretch.widths;
         let last = way.table.path.steps;
-        let left = |step: usize| if step + 1 < last { L::splat(1.0) } else { ends.left(step) };
         stretch.take(steps.len());
-        seen.ride.take(stretch, self.static_loads, left, place == Where::Bridge);
+        // What becomes of vehicles behind the bridge is none of its business.
+        if place != Where::Tail {
+            let left = |step: usize| L::splat(if step < last { 1.0 } else { 0.0 });
+            seen.ride.take(stretch, self.static_loads, left, place == Where::Bridge);
+        }
         if place == Where::Approach {
             return;
         }
@@ -353,25 +449,27 @@ pub fn march<L: Lanes>(
     let steps = table.path.steps;
     let bodies = group.bodies.len();
     let widths = way.widths(bodies);
-    let latest = group.ends.latest;
     let longest = longest(&widths);
     let Scratch { stretch, glanced, between, chunks: own_chunks } = scratch;
     let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
     let speed = group.geometry.speed;
     let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
     let static_loads = steppers.bridge.static_loads();
-    let mut traveller = Traveller { group, state, static_loads };
+    let vibration = steppers.bridge.vibration();
+    let mut traveller = Traveller { group, state, static_loads, vibration };
     stretch.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
     traveller.keep(stretch.row_mut(0)[0], &widths, rows.by_rates(), table.first == 0);
     let (mut stop, mut from) = (0, 0);
-    while from <= latest {
+    while from <= traveller.group.ends.latest {
         let (place, end, most) = if from < table.first {
             (Where::Approach, table.first, 1)
         } else if from <= steps {
             (Where::Bridge, steps + 1, longest)
+        } else if traveller.group.ends.free {
+            (Where::Tail, traveller.group.ends.latest + 1, 1)
         } else {
-            (Where::Tail, latest + 1, longest)
+            (Where::Tail, traveller.group.ends.latest + 1, longest)
         };
         let to = end.min(from + CHUNK);
         if place != Where::Approach && traveller.state.modes.is_empty() {
@@ -381,8 +479,20 @@ pub fn march<L: Lanes>(
             stretch.begin(widths, from, most.min((end - from).div_ceil(CHUNK)));
         }
         let steppers = &mut *steppers;
-        let stepping = Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: from..to, go_on };
-        L::dispatch(stepping)?;
+        let with_vehicle = from..to.min(table.last() + 1);
+        let alone = with_vehicle.end.max(from);
+        if !with_vehicle.is_empty() {
+            let stepping =
+                Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: with_vehicle, go_on };
+            L::dispatch(stepping)?;
+        }
+        if place == Where::Tail {
+            let (reach, rates) = (&mut seen.reach, rows.by_rates());
+            L::dispatch(Swinging { traveller: &mut traveller, reach, rates, stretch, steps: from..to, alone });
+            if !go_on() {
+                return Err(Trouble::Interrupted);
+            }
+        }
         let looking = Looking {
             seen: &mut seen,
             way,
@@ -403,6 +513,9 @@ pub fn march<L: Lanes>(
                 L::dispatch(Surveying { watched: &mut seen.steps, look, stretch, chunks, glanced });
             }
             stretch.go_on();
+            if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
+                L::dispatch(Deciding { traveller: &mut traveller, seen: &mut seen, way, step: to - 1 });
+            }
         }
         from = to;
     }

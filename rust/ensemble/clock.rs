@@ -14,13 +14,13 @@ pub struct Pace {
     /// Front axle at the start [m].
     start: f64,
     /// Way per step [m].
-    advance: f64,
+    pub advance: f64,
     /// Number of steps until the last axle has left.
-    steps: usize,
+    pub steps: usize,
     /// How often the step was halved.
-    halvings: u32,
+    pub halvings: u32,
     /// The step at whose end each stop has been passed, how far through that step, and where the front axle is then [m].
-    stops: Vec<(u32, f64, f64)>,
+    pub stops: Vec<(u32, f64, f64)>,
 }
 
 impl Pace {
@@ -45,15 +45,15 @@ impl Pace {
 /// The paces of all marches of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
-    /// Free vibration kept after the last axle has left [s].
-    tail: f64,
+    /// Free vibration kept after the last axle has left, if that is given [s].
+    tail: Option<f64>,
     /// By march; none where samples have times of their own.
-    paces: Vec<Pace>,
+    pub paces: Vec<Pace>,
 }
 
 impl Clock {
-    /// Of these marches, with a tail [s].
-    pub fn new(tail: f64, paces: Vec<Pace>) -> Self {
+    /// Of these marches, with a tail [s] if that is given.
+    pub fn new(tail: Option<f64>, paces: Vec<Pace>) -> Self {
         Clock { tail, paces }
     }
 
@@ -63,7 +63,7 @@ impl Clock {
             let Pace { start, advance, ref stops, .. } = *pace;
             start.is_finite() && advance.is_finite() && advance > 0.0 && stops.iter().all(|stop| stop.0 > 0)
         };
-        self.tail.is_finite() && self.tail >= 0.0 && self.paces.iter().all(sound)
+        self.tail.is_none_or(|tail| tail.is_finite() && tail >= 0.0) && self.paces.iter().all(sound)
     }
 
     /// The time step at a speed [s], and how often it was halved; none where samples have times of their own.
@@ -82,7 +82,9 @@ impl Clock {
             }),
             Err(step) => {
                 let (time, there) = (step as f64 * h, position(step));
-                let (last, fraction) = together::end(pace.steps, h, self.tail);
+                // One that is not given ends with a step.
+                let Some(tail) = self.tail else { return (time, there) };
+                let (last, fraction) = together::end(pace.steps, h, tail);
                 if step < last || fraction == 1.0 {
                     return (time, there);
                 }
@@ -94,7 +96,7 @@ impl Clock {
 
     /// Several as one, and which march of it each of theirs is.
     pub fn joined(clocks: &[Clock]) -> (Clock, Vec<Vec<u32>>) {
-        let mut joined = Clock { tail: clocks.first().map_or(0.0, |clock| clock.tail), paces: Vec::new() };
+        let mut joined = Clock { tail: clocks.first().and_then(|clock| clock.tail), paces: Vec::new() };
         let mut known: BTreeMap<(u32, usize, usize), Vec<u32>> = BTreeMap::new();
         let renumbered = clocks.iter().map(|clock| {
             let number = |pace: &Pace| {

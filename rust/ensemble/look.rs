@@ -57,6 +57,11 @@ impl Look {
         look
     }
 
+    /// The first of the chosen responses that a row stands for.
+    pub fn place(&self, row: usize) -> usize {
+        self.row_of.iter().position(|&r| r == row).unwrap_or(0)
+    }
+
     /// The row that stands for a response, if it is looked at.
     pub fn row(&self, response: usize) -> Option<usize> {
         self.chosen.iter().position(|&r| r == response).map(|place| self.row_of[place])

@@ -40,6 +40,10 @@ pub enum Column {
     Times,
     /// Positions of the front axle at these [m].
     Positions,
+    /// Length of the tail [s]; how far free vibration after it can exceed an extreme, in parts of the largest of its kind
+    /// along the bridge, not a number where a vehicle stands on the bridge; and which: twice its place among the
+    /// responses looked at, and one more of the smallest.
+    Tail,
 }
 
 impl Layout {
@@ -61,6 +65,7 @@ impl Layout {
             (Column::Statics, own(self.own_statics, 2 * self.responses)),
             (Column::Times, own(self.own_times, self.extremes())),
             (Column::Positions, own(self.own_times, self.extremes())),
+            (Column::Tail, 3),
         ];
         let mut start = 0;
         for (each, width) in widths {
@@ -90,7 +95,7 @@ impl Layout {
 
     /// Numbers of a sample.
     pub fn width(&self) -> usize {
-        self.range(Column::Positions).end
+        self.range(Column::Tail).end
     }
 
     /// Bytes of a sample, with its march, digest and what it takes to sort it in.

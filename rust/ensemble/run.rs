@@ -142,7 +142,7 @@ impl Study {
             put_back(&order, &mut results);
         }
         let paces = marches.iter().zip(&tables).map(|(&(_, halvings), table)| Pace::new(table, halvings)).collect();
-        let clock = Clock::new(self.settings.tail, paces);
+        let clock = Clock::new(self.settings.tail.seconds(), paces);
         let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
         let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
         Ok(Run { results, clock, at_rest })

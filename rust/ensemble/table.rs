@@ -103,7 +103,7 @@ pub struct Advance {
     pub behind: Vec<f64>,
     /// Number of steps until the last axle has left.
     pub steps: usize,
-    /// Steps beyond these during which axles still roll on the road behind the bridge, if they are followed.
+    /// Steps beyond these in which the vehicle is followed, if there is a tail.
     pub beyond: usize,
 }
 
@@ -220,7 +220,7 @@ impl Table {
         self.path.behind.len()
     }
 
-    /// The last step that the table knows; beyond it nothing changes.
+    /// The last step that the table knows; beyond it there is the bridge alone.
     pub fn last(&self) -> usize {
         self.path.steps + self.path.beyond
     }

@@ -14,8 +14,10 @@ use super::{Kind, Study};
 use crate::error::Error;
 use crate::lane::Lane;
 use crate::modal::ModalDamping;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
 use crate::step::{Moving, Propulsion, Scheme, Stepper, Unsettled};
+use crate::steps::{bytes, room};
+use crate::tail::most_steps;
 
 /// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
 pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
@@ -38,7 +40,7 @@ pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.
 pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
-    let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely: false };
+    let way = Way { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely: false };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
     let seen = rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
@@ -108,6 +110,8 @@ struct Marched<L> {
     seen: Seen<L>,
     /// Of the static responses, if they differ from sample to sample.
     at_rest: Option<Seen<L>>,
+    /// How far free vibration can exceed it, and where.
+    growth: [L; 2],
     /// The last step of each.
     last: L,
 }
@@ -120,6 +124,8 @@ struct Ready {
     approach: Stepper<f64>,
     stepper: Stepper<f64>,
     bridge: Option<Bridge<f64>>,
+    /// ω² of its slowest mode.
+    slowest: f64,
     /// Factor of the bridge's stiffness.
     stiffness: f64,
     static_loads: Vec<f64>,
@@ -140,6 +146,14 @@ impl Task<'_> {
         self.table.path.advance / self.samples.speed(sample, 0)
     }
 
+    /// Most steps of a tail that is not given.
+    fn most(&self, sample: usize, ready: &Ready) -> usize {
+        let (axles, modes) = (self.table.axles(), self.table.modes);
+        let coordinates = self.study.vehicle(self.kind).assembly().mass.nrows() + 1;
+        let room = room(self.table.path.steps as f64, bytes(modes, axles, coordinates));
+        most_steps(ready.slowest, self.step(sample), room)
+    }
+
     fn ready(&self, sample: usize) -> Result<Ready, Error> {
         let passages = passages(self.study, self.samples, sample)?;
         let vehicle = &passages[0].vehicle;
@@ -156,7 +170,9 @@ impl Task<'_> {
         let h = self.step(sample);
         let (starter, approach) = (stepper(if self.table.first > 0 { none } else { there }, 0.0), stepper(none, h));
         let stepper = stepper(there, h);
+        let slowest = there.0.iter().fold(f64::INFINITY, |least, w| w.powi(2).min(least));
         Ok(Ready {
+            slowest,
             ways: [&starter, &approach, &stepper].into_iter().flat_map(Stepper::ways).collect(),
             starter,
             approach,
@@ -270,7 +286,7 @@ impl Task<'_> {
     ) -> Result<Marched<L>, Trouble> {
         let Task { study, table, samples, .. } = *self;
         let kind: &Kind = &study.kinds[self.kind];
-        let way = Way { table, rows: &study.analysis.rows, look: &study.look, closely };
+        let way = Way { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely };
         let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
         let ready_of = |lane: usize| &ready[lane.min(ready.len() - 1)];
         let gather = |of: fn(&Ready) -> &Stepper<f64>| {
@@ -286,11 +302,15 @@ impl Task<'_> {
             let sample = |lane: usize| samples.first + sample_of(lane) as u64;
             L::dispatch(Drawing { synthesis, seed: *seed, sample, road: roads });
         }
-        let ended = |lane: usize| end(table.path.steps, self.step(sample_of(lane)), study.settings.tail);
+        let ended = |lane: usize| match study.settings.tail {
+            Tail::Fixed(tail) => end(table.path.steps, self.step(sample_of(lane)), tail),
+            Tail::Free => (table.path.steps + self.most(sample_of(lane), ready_of(lane)), 1.0),
+        };
         let ends = Ends {
             last: L::from_fn(|lane| ended(lane).0 as f64),
             fraction: L::from_fn(|lane| ended(lane).1),
             latest: (0..places.len()).map(|lane| ended(lane).0).max().unwrap_or(0),
+            free: study.settings.tail == Tail::Free,
         };
         let bridge = ready_of(0).bridge.is_some().then(|| {
             let of = |f: fn(Bridge<f64>) -> f64| L::from_fn(|lane| ready_of(lane).bridge.map_or(1.0, f));
@@ -309,7 +329,11 @@ impl Task<'_> {
             let loads: Vec<L> = (0..table.axles()).map(of).collect();
             rest(&way, &loads)
         });
-        Ok(Marched { seen, at_rest, last: group.ends.last })
+        let growth = match &seen.reach {
+            Some(reach) => study.free.growth(reach, |row| seen.reached(row), |row| study.look.place(row)),
+            None => [L::splat(f64::NAN); 2],
+        };
+        Ok(Marched { seen, at_rest, growth, last: group.ends.last })
     }
 
     /// Writes down what was seen of a sample, and says whether all of it is finite.
@@ -329,7 +353,7 @@ impl Task<'_> {
 
     fn write_numbers<L: Lane>(
         &self,
-        Marched { seen, at_rest, .. }: &Marched<L>,
+        Marched { seen, at_rest, growth, last }: &Marched<L>,
         lane: usize,
         sample: usize,
         (stiffness, static_loads): (f64, &[f64]),
@@ -353,6 +377,13 @@ impl Task<'_> {
                 }
             }
         }
+        let start = layout.range(Column::Tail).start;
+        let tail = match self.study.settings.tail {
+            Tail::Fixed(tail) => tail,
+            Tail::Free => (last.get(lane) - self.table.path.steps as f64) * h,
+        };
+        let [growth, place] = growth.map(|each| each.get(lane));
+        record.numbers[start..start + 3].copy_from_slice(&[tail, growth, place]);
         let ride = &seen.ride;
         let count = (self.table.path.steps + 1 - self.table.first) as f64;
         let column = |column: Column| layout.range(column).start;

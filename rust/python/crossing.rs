@@ -19,7 +19,7 @@ use crate::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::error::Error;
 use crate::influence::Quantity;
 use crate::recovery::Recovery;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
 use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
@@ -156,6 +156,45 @@ impl Crossing {
     #[getter]
     fn steps(&self) -> usize {
         self.outcome.history.len() - 1
+    }
+
+    /// Length of the tail [s].
+    #[getter]
+    fn tail(&self) -> f64 {
+        let history = &self.outcome.history;
+        history.time.last().map_or(0.0, |last| last - history.ended)
+    }
+
+    /// Whether the tail ended because nothing that is looked at can follow.
+    #[getter]
+    fn settled(&self) -> bool {
+        self.outcome.history.settled
+    }
+
+    /// How far free vibration after the end can exceed an extreme, in parts of the largest of its kind along the bridge;
+    /// not a number where a vehicle stands on the bridge.
+    #[getter]
+    fn growth(&self) -> f64 {
+        let analysis::Outcome { history, envelope: Envelope { dynamic, .. }, .. } = &self.outcome;
+        let seen = |r: usize| [dynamic.max[r].value, dynamic.min[r].value];
+        let of = |reach| self.analysis.free.growth(reach, seen, |row| row)[0];
+        history.reach.as_ref().map_or(f64::NAN, of)
+    }
+
+    /// Largest magnitude of a quantity that free vibration after the end can reach; none where a vehicle stands on the
+    /// bridge.
+    fn reach<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Vector<'py>>> {
+        let Some(bounds) = &self.outcome.bounds else { return Ok(None) };
+        let of = |quantity| &bounds[self.analysis.responses.range(quantity)];
+        let all = match name {
+            // On both sides of a section.
+            "shear" => {
+                let sides = of(Quantity::ShearLeft).iter().zip(of(Quantity::ShearRight));
+                sides.map(|(left, right)| left.max(*right)).collect()
+            }
+            _ => of(quantity(name)?).to_vec(),
+        };
+        Ok(Some(all.into_pyarray(py)))
     }
 
     /// Speed of each vehicle at the end.
@@ -343,7 +382,7 @@ pub fn cross<'py>(
     step: Option<f64>,
     approach: f64,
     ramp: f64,
-    tail: f64,
+    tail: Option<f64>,
     gravity: f64,
     lift_off: bool,
     sections: Option<Vec<f64>>,
@@ -353,6 +392,7 @@ pub fn cross<'py>(
         Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
     let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
     // Every passage says its own speed or brings it with its drive.
+    let tail = tail.map_or(Tail::Free, Tail::Fixed);
     let settings = Settings { beta, step, approach, ramp, tail, gravity, lift_off, ..Settings::at_speed(f64::NAN) };
     let solved = Arc::clone(&bridge.0);
     let assemblies = passages.iter().map(|passage| passage.vehicle.assembly());

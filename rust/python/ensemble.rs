@@ -25,7 +25,7 @@ use crate::influence::Quantity;
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tail};
 use crate::vehicle::Vehicle;
 
 /// Random roads of the samples' own: roughness, waviness, band, contact patch, period, seed.
@@ -135,7 +135,9 @@ impl Ensemble {
             let range = self.layout.range(column);
             (name, (range.start, range.end))
         };
-        all.into_iter().map(place).collect()
+        let tail = self.layout.range(Column::Tail).start;
+        let single = ["tail", "growth", "growing"].into_iter().zip(tail..).map(|(name, at)| (name, (at, at + 1)));
+        all.into_iter().map(place).chain(single).collect()
     }
 
     /// Static extremes, largest and then smallest of all responses, in a row for each kind of march; none if samples have
@@ -335,7 +337,7 @@ pub fn ensemble<'py>(
     advance: Option<f64>,
     approach: f64,
     ramp: f64,
-    tail: f64,
+    tail: Option<f64>,
     gravity: f64,
     lift_off: bool,
     sections: Option<Vec<f64>>,
@@ -368,7 +370,7 @@ pub fn ensemble<'py>(
         step,
         approach,
         ramp,
-        tail,
+        tail: tail.map_or(Tail::Free, Tail::Fixed),
         gravity,
         lift_off,
         road: Arc::new(road.0.clone()),

@@ -3,10 +3,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use spanwise::analysis::Analysis;
+use spanwise::analysis::{Analysis, Watching};
 use spanwise::bridge::Bridge;
 use spanwise::course::Passage;
-use spanwise::crossing::{ModalBridge, cross_all};
+use spanwise::crossing::{ModalBridge, cross_watched};
 use spanwise::damping::Damping;
 use spanwise::ensemble::record::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
@@ -26,8 +26,7 @@ use spanwise::road::feature::Feature;
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
-use spanwise::settings::Settings;
-use spanwise::survey::survey;
+use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
 
 use super::vehicles::{articulated, half_car, leaf};
@@ -111,7 +110,7 @@ pub fn mixed() -> Study {
     let two = half_car([700.0, 1100.0], 1.0, 1.0, leaf(8e3, 1e-3));
     let kinds = vec![vec![Passage::of(two)], vec![Passage::of(articulated(1.0, 1.0))]];
     let road = Arc::new(bump(12.0));
-    let settings = Settings { approach: 20.0, ramp: 5.0, tail: 0.3, road, ..Settings::at_speed(SPEED) };
+    let settings = Settings { approach: 20.0, ramp: 5.0, tail: Tail::Fixed(0.3), road, ..Settings::at_speed(SPEED) };
     Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), Some(0.1), &ALL).unwrap()
 }
 
@@ -197,6 +196,8 @@ pub struct Alone {
     pub axle_loads: Envelope,
     /// By what deflections are still to be divided.
     pub stiffness: f64,
+    /// What Ȧ has been multiplied by.
+    pub rates: f64,
 }
 
 /// A sample as a single crossing, in steps of this way [m].
@@ -215,27 +216,24 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
         passage.vehicle = samples.vehicle(&passage.vehicle, sample, [0, 0])?;
     }
     let vehicle = passage.vehicle.clone();
-    let Analysis { model, rows, responses, .. } = &*study.analysis;
+    let model = &study.analysis.model;
     let factor = |parameter: Parameter| samples.factor(parameter, sample, 0);
     let [stiffness, damping] = [Parameter::BridgeStiffness, Parameter::BridgeDamping].map(factor);
-    if (stiffness, damping) == (None, None) {
-        let outcome = study.analysis.cross_all(&[passage], &settings, &mut || true)?;
-        let (history, envelope, axle_loads) = (outcome.history, outcome.envelope, outcome.axle_loads);
-        return Ok(Alone { vehicle, history, envelope, axle_loads, stiffness: 1.0 });
-    }
     // Frequencies go with the root of the stiffness, ratios to critical damping are what they are; forces k Φᵀ K A and
     // C Ȧ go with both.
     let (stiffness, factor) = (stiffness.unwrap_or(1.0), damping.unwrap_or(1.0));
-    let ModalDamping::Classical(ratios) = &model.damping else { panic!("damping in modes") };
-    let damping = ModalDamping::Classical(ratios.iter().map(|ratio| ratio * factor).collect());
+    let damping = match &model.damping {
+        ModalDamping::Classical(ratios) => ModalDamping::Classical(ratios.iter().map(|r| r * factor).collect()),
+        full if factor == 1.0 => full.clone(),
+        ModalDamping::Coupled(_) => panic!("damping in modes"),
+    };
     let root = stiffness.sqrt();
     let omega = model.omega.iter().map(|omega| omega * root).collect();
     let own = ModalBridge { omega, damping, ..model.clone() };
-    let mut history = cross_all(&own, &[passage], &settings, &mut || true)?;
-    history.a.iter_mut().for_each(|a| *a *= stiffness);
-    history.a_dot.iter_mut().for_each(|v| *v *= root * factor);
-    let envelope = survey(&history, rows, &rows.pack_history(&history), responses, &mut || true)?;
-    Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness })
+    let mut watching = Watching::new(&study.analysis, &study.free, [stiffness, root * factor]);
+    let mut history = cross_watched(&own, &[passage], &settings, &mut watching, &mut || true)?;
+    let (_, envelope) = watching.conclude(&mut history, &mut || true)?;
+    Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness, rates: root * factor })
 }
 
 /// Every sample against its own single crossing, to the bit: extremes of responses and axle loads, when and where, and
@@ -245,7 +243,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
     assert!(results.failures.is_empty(), "{name}: {:?}", results.failures);
     for sample in 0..samples.count {
         let march = results.marches[sample] as usize;
-        let alone = match alone(study, samples, sample, run.tables[march].path.advance) {
+        let alone = match alone(study, samples, sample, run.clock.paces[march].advance) {
             Ok(alone) => alone,
             Err(error) => panic!("{name}, sample {sample}: {error}"),
         };
@@ -257,6 +255,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 "{name}, sample {sample}, {what} {at}: {value}, {expected}"
             );
         };
+        let when = |instant: u32| run.clock.when(march as u32, samples.speed(sample, 0), instant);
         let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
         let values = column(results, sample, Column::Responses);
         let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
@@ -271,9 +270,9 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 [(dynamic.max[r], at_rest.max[r]), (dynamic.min[r], at_rest.min[r])].into_iter().enumerate()
             {
                 let at = side * layout.responses + place;
-                let (time, position) = run.when(study, samples, sample, instants[at]);
+                let (time, position) = when(instants[at]);
                 // Cut short, the last step is rounded before or after the factors of the bridge.
-                let cut = alone.stiffness != 1.0 && study.settings.tail > 0.0;
+                let cut = alone.stiffness != 1.0 && study.settings.tail.seconds() > Some(0.0);
                 if cut && alone.history.time.last() == Some(&time) {
                     let off = (values[at] * shrink(place) / extreme.value - 1.0).abs();
                     assert!(off <= 8.0 * f64::EPSILON, "{name}, sample {sample}, response {r}: off by {off:e}");
@@ -292,13 +291,28 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 }
             }
         }
+        let &[tail, growth, growing] = column(results, sample, Column::Tail) else { panic!("three numbers") };
+        let length = alone.history.time.last().unwrap() - alone.history.ended;
+        assert!((tail - length).abs() <= 1e-9 * alone.history.step, "{name}, sample {sample}: {tail} s, {length} s");
+        let reach = alone.history.reach.clone().unwrap().scaled(alone.stiffness, alone.rates);
+        let seen = |row: usize| {
+            let r = study.free.responses[row];
+            [alone.envelope.dynamic.max[r].value, alone.envelope.dynamic.min[r].value]
+        };
+        let expected = study.free.growth(&reach, seen, |row| study.look.place(row));
+        if alone.stiffness == 1.0 {
+            same("growth", 0, growth, expected[0]);
+            same("place of growth", 0, growing, expected[1]);
+        } else {
+            assert!((growth - expected[0]).abs() <= 1e-12, "{name}, sample {sample}: {growth}, {expected:?}");
+        }
         let loads = column(results, sample, Column::Loads);
         for k in 0..alone.history.axles {
             let sides = [alone.axle_loads.dynamic.max[k], alone.axle_loads.dynamic.min[k]];
             for (side, extreme) in sides.into_iter().enumerate() {
                 let at = side * layout.axles + k;
                 same("load of axle", k, loads[at], extreme.value);
-                let (time, position) = run.when(study, samples, sample, instants[2 * layout.responses + at]);
+                let (time, position) = when(instants[2 * layout.responses + at]);
                 same("time of load", k, time, extreme.time);
                 same("place of load", k, position, extreme.position);
             }

@@ -1,0 +1,180 @@
+"""The tail that is not given, and records that end too early."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import spanwise as sw
+from spanwise._recipe import Quantity
+
+BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.9415e9, mass=6037.6, stations_per_span=3)
+TRUCK = sw.vehicles.kishan_1973()
+SPAN = sw.Bridge(spans=[25.0], EI=8.3e9, mass=2303.0)
+FORCE = sw.ForceTrain(loads=[1e5], positions=[0.0])
+SIDES = ("max", "min")
+QUANTITIES: tuple[Quantity, ...] = ("deflection", "moment", "shear", "reactions")
+
+#: What a tail that ended by itself may have missed of an extreme.
+MISSED = 1e-3
+
+
+def missed(short: sw.Run, long: sw.Run) -> float:
+    worst = 0.0
+    for quantity in QUANTITIES:
+        a, b = short.envelope(quantity), long.envelope(quantity)
+        largest = np.abs(b.max.value).max()
+        for side in SIDES:
+            own, other = getattr(a, side).value, getattr(b, side).value
+            there = np.abs(other) > 1e-6 * largest
+            part = np.abs(own - other)[there] / np.abs(other)[there]
+            worst = max(worst, float(part.max(initial=0.0)))
+    return worst
+
+
+@pytest.mark.parametrize("damping", [0.005, 0.02, 0.05])
+@pytest.mark.parametrize("speed", [10.0, 22.86, 60.0])
+def test_nothing_follows(damping: float, speed: float) -> None:
+    run = sw.cross(BRIDGE, TRUCK, speed=speed, modes=3, damping=damping)
+    long = sw.cross(BRIDGE, TRUCK, speed=speed, modes=3, damping=damping, tail=40.0 / 2.66)
+    assert run.settled
+    assert not run.can_grow
+    assert run.tail < 10.5 / run.frequencies[0]
+    assert missed(run, long) <= MISSED
+    assert run.axle_loads.shape == (len(run.time), 2)
+    assert (run.envelope("axle_loads").max.value == long.envelope("axle_loads").max.value).all()
+
+
+def test_a_record_that_ends_too_early_says_so() -> None:
+    """Upward the bridge goes only when the force has gone, a thousand times as far as before."""
+    none = sw.cross(SPAN, FORCE, speed=30.0, damping=0.02, tail=0.0, sections=[12.5])
+    free = sw.cross(SPAN, FORCE, speed=30.0, damping=0.02, sections=[12.5])
+    up, before = free.envelope("deflection").min.value[0], none.envelope("deflection").min.value[0]
+    assert up < 100.0 * min(before, -1e-12)
+    (found,) = (
+        each for each in none.can_grow if (each.quantity, each.side) == ("deflection", "min")
+    )
+    assert found.recorded == before
+    assert 1.2 * up < found.reach <= up
+    assert "deflection, up" in none.summary()
+    assert "can reach more than was recorded" in none.summary()
+    assert "until no extreme can follow" in free.summary()
+    told = json.loads(json.dumps(none.to_dict()))["tail"]
+    assert (told["length"], told["settled"]) == (0.0, False)
+    assert {"quantity", "side", "x", "recorded", "reach"} == set(told["can_grow"][0])
+
+
+def test_above_the_critical_speed() -> None:
+    run = sw.cross(SPAN, FORCE, speed=420.0, damping=0.02, sections=[12.5])
+    none = sw.cross(SPAN, FORCE, speed=420.0, damping=0.02, sections=[12.5], tail=0.0)
+    assert run.envelope("deflection").max.time[0] > none.time[-1]
+    (found,) = (
+        each for each in none.can_grow if (each.quantity, each.side) == ("deflection", "max")
+    )
+    assert found.recorded * 1.2 < run.envelope("deflection").max.value[0] <= found.reach
+
+
+def test_without_damping_it_ends_in_the_end() -> None:
+    run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.0)
+    assert not run.settled
+    assert run.tail == pytest.approx(10.0 / run.frequencies[0], abs=0.05)
+    assert "ten periods" in run.summary()
+
+
+def test_settings_run_again(tmp_path: Path) -> None:
+    for tail in (None, 0.25):
+        run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.02, tail=tail)
+        path = tmp_path / "run.json"
+        run.to_json(path)
+        told = json.loads(path.read_text())
+        assert told["settings"]["crossing"]["tail"] == tail
+        again = sw.Case.from_dict(told["settings"]).run()
+        assert again.tail == run.tail == told["tail"]["length"]
+        assert (again.deflection == run.deflection).all()
+
+
+def test_a_standing_vehicle() -> None:
+    braking = sw.Braking(deceleration=5.0, start=0.0)
+    run = sw.cross(BRIDGE, TRUCK, speed=12.0, modes=3, damping=0.05, drive=braking)
+    assert run.stopped[0] is not None
+    assert not run.settled
+    assert not run.can_grow
+    assert "ten periods" in run.summary()
+
+
+@pytest.mark.parametrize("quantities", [None, ["moment"]])
+def test_each_sample_of_an_ensemble(quantities: list[Quantity] | None) -> None:
+    many = sw.ensemble(
+        BRIDGE,
+        TRUCK,
+        samples=9,
+        speed=np.linspace(12.0, 40.0, 9),
+        road=sw.ISO8608("C"),
+        modes=3,
+        damping=0.02,
+        quantities=quantities,
+    )
+    assert len(set(many.tail)) > 4
+    assert (many.growth == 0.0).all()
+    assert "until no extreme can follow" in many.summary()
+    for i in (0, 4, 8):
+        run = many.run(i)
+        assert run.tail == pytest.approx(many.tail[i], abs=1e-9)
+        for side in SIDES:
+            own = getattr(run.envelope("moment"), side).value
+            assert (own == getattr(many.envelope("moment"), side)[i]).all()
+
+
+def test_samples_that_end_too_early() -> None:
+    options: dict[str, Any] = {"speed": 22.86, "road": sw.ISO8608("C"), "modes": 3, "damping": 0.02}
+    many = sw.ensemble(BRIDGE, TRUCK, samples=5, tail=0.0, **options)
+    assert (many.growth > 0.0).all()
+    assert (many.tail == 0.0).all()
+    assert "in 5 samples free vibration after the end can exceed an extreme" in many.summary()
+    run = many.run(0)
+    largest = max(
+        abs(each.reach - each.recorded)
+        / max(np.abs(getattr(run.envelope(each.quantity), side).value).max() for side in SIDES)
+        for each in run.can_grow
+    )
+    assert many.growth[0] == run.growth == pytest.approx(largest, rel=1e-9)
+
+
+def test_histories_of_samples_are_as_long_as_the_longest() -> None:
+    many = sw.ensemble(
+        BRIDGE, TRUCK, samples=4, speed=22.86, road=sw.ISO8608("C"), modes=3, damping=0.02
+    )
+    assert len(set(many.tail)) > 1
+    found = many.histories("moment", [0, 1, 2, 3])
+    longest = int(np.argmax(many.tail))
+    assert (found[longest] == many.run(longest).moment).all()
+    shortest = many.run(int(np.argmin(many.tail)))
+    assert (found[int(np.argmin(many.tail)), : len(shortest.time)] == shortest.moment).all()
+
+
+def test_the_road_goes_on_in_the_tail() -> None:
+    options: dict[str, Any] = {
+        "speed": 22.86,
+        "modes": 3,
+        "damping": 0.02,
+        "approach": 10.0,
+        "ramp": 5.0,
+    }
+    run = sw.cross(BRIDGE, TRUCK, road=sw.ISO8608("B", seed=1), tail=1.0, **options)
+    assert np.ptp(run.vehicle.elevations[-50:, 0]) > 0.0
+    # What was measured goes on at the elevation where it ends.
+    x = np.arange(-20.0, 45.0, 0.25)
+    road = sw.Profile(x=x, elevations=5e-3 * np.sin(x), contact_patch=0.0)
+    for tail in (1.0, None):
+        run = sw.cross(BRIDGE, TRUCK, road=road, tail=tail, **options)
+        behind = run.vehicle.axle_positions[:, 0] > x[-1] + 0.01
+        assert behind.any() or tail is None
+        assert np.ptp(run.vehicle.elevations[behind, 0], axis=0) <= 1e-12 if behind.any() else True
+    # It must hold the way over the bridge all the same.
+    short = sw.Profile(x=x[:200], elevations=0.0 * x[:200])
+    with pytest.raises(ValueError, match="give a longer road"):
+        sw.cross(BRIDGE, TRUCK, road=short, **options)
