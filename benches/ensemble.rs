@@ -255,7 +255,8 @@ fn share() {
     const TURNS: usize = 15;
     let study = headline();
     let before = COUNTS.take();
-    let counted: Vec<(Vec<f64>, Vec<u32>)> = (0..COUNTED).map(|number| one::<Counted>(&study, number as u64)).collect();
+    let counted: Vec<(Vec<f64>, Vec<u32>)> =
+        (0..COUNTED).map(|number| one::<Counted>(&study, number as u64, true)).collect();
     let counts = COUNTS.replace(before);
     // Else something else was counted than what the engine does.
     let engine = run(&study, &samples(COUNTED), isas()[0].1, 1).results;

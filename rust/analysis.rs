@@ -13,6 +13,7 @@ use crate::float_mode::Standard;
 use crate::given::Given;
 use crate::history::History;
 use crate::influence::{Quantity, Responses};
+use crate::memory;
 use crate::modes::Modes;
 use crate::path::ModeShapes;
 use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
@@ -22,7 +23,7 @@ use crate::tail::{FreeRows, Reach, Watch};
 use crate::vehicle::Vehicle;
 
 /// Most memory that the histories of one quantity may take [bytes].
-pub const MAX_HISTORY_BYTES: usize = 2 << 30;
+pub const MAX_HISTORY_BYTES: f64 = (2u64 << 30) as f64;
 
 /// Most sections looked at: their influence lines take memory with the square of the number.
 pub const MAX_SECTIONS: usize = 2000;
@@ -69,6 +70,7 @@ impl Analysis {
                 checked_sections(&sections, bridge.length())?
             }
         };
+        check_lines(sections.len(), bridge.supports().len(), bridge.span_bounds().len() + bridge.stations().len())?;
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
@@ -92,6 +94,7 @@ impl Analysis {
         let _mode = Standard::set();
         let (modes, lines) = given.modes(count)?;
         let (sections, chosen) = given.chosen(sections)?;
+        check_lines(chosen.len(), given.responses().len(), given.mesh().panels())?;
         let responses = given.responses().of_sections(&chosen);
         let in_modes = given.damping(&modes, damping)?;
         let factors = given.factors(&responses, &chosen, &modes, (damping, &in_modes));
@@ -148,16 +151,10 @@ impl Analysis {
             return Err(Error::input("quantity", quantity.name(), allowed));
         }
         let range = self.responses.range(quantity);
-        let bytes = 2 * size_of::<f64>() * outcome.history.len() * range.len();
-        if bytes > MAX_HISTORY_BYTES {
-            let size = format!("{} positions at {} instants", range.len(), outcome.history.len());
-            let allowed = format!(
-                "histories there would take {:.1} GB, more than {:.1}: use fewer sections or a longer step",
-                bytes as f64 / 1e9,
-                MAX_HISTORY_BYTES as f64 / 1e9
-            );
-            return Err(Error::input("sections", size, allowed));
-        }
+        let bytes = 2.0 * size_of::<f64>() as f64 * outcome.history.len() as f64 * range.len() as f64;
+        let size = format!("{} positions at {} instants", range.len(), outcome.history.len());
+        let mend = "use fewer sections or a longer step";
+        memory::check("sections", size, bytes, MAX_HISTORY_BYTES, "histories there", mend)?;
         let _mode = Standard::set();
         self.rows.histories(&outcome.packed, range, go_on)
     }
@@ -250,6 +247,14 @@ impl Watch for Watching<'_> {
         let load = history.static_loads.iter().sum();
         Ok(free.settled(&reach.clone().scaled(coordinates, rates), load, |row| survey.reached(free.responses[row])))
     }
+}
+
+/// Refuses sections whose influence lines there is no memory for: twice each, as lines and in the rows, over the panels
+/// between them and a number of other points, for deflection, moment and both shears, and for the supports.
+fn check_lines(sections: usize, supports: usize, points: usize) -> Result<(), Error> {
+    let (lines, panels) = (4 * sections + 2 * supports, sections + points);
+    let bytes = 2.0 * size_of::<[f64; 4]>() as f64 * lines as f64 * panels as f64;
+    memory::check("sections", sections, bytes, f64::INFINITY, "influence lines of so many", "use fewer")
 }
 
 fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {

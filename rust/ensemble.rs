@@ -8,11 +8,14 @@
 pub mod alone;
 pub mod block;
 pub mod clock;
+pub mod few;
 pub mod look;
 pub mod record;
+pub mod room;
 pub mod run;
 pub mod sample;
 pub mod shared;
+pub mod shelf;
 pub mod simd;
 pub mod stretch;
 pub mod survey;
@@ -35,7 +38,7 @@ use crate::steps::{MAX_STEPS, Steps};
 use crate::tail::FreeRows;
 use crate::vehicle::{MAX_AXLES, Vehicle};
 use look::Look;
-use record::Layout;
+use record::{Failure, Layout};
 pub use run::{BLOCK, Progress, Run, Workers};
 use sample::{Parameter, Samples};
 use table::{Advance, Ground, Table};
@@ -74,7 +77,7 @@ pub struct Study {
 }
 
 /// How a sample marches: which kind of event, and how often the step is halved.
-type March = (usize, u32);
+pub type March = (usize, u32);
 
 impl Study {
     /// Of crossings of a bridge by `kinds` of event, with the samples' `own` roads on top of that of the settings, in
@@ -216,16 +219,21 @@ impl Study {
         (steps as usize, path / steps)
     }
 
-    /// The geometry of a kind whose step is halved so many times.
-    pub fn table(&self, (kind, halvings): March) -> Table {
-        let Analysis { model, rows, responses, .. } = &*self.analysis;
-        let contacts = &self.vehicle(kind).assembly().contacts;
-        let length = model.shapes.mesh().length();
+    /// How the axles of a kind move whose step is halved so many times.
+    pub fn path(&self, (kind, halvings): March) -> Advance {
         let wheelbase = self.vehicle(kind).wheelbase();
-        let (steps, _) = self.plan(kind);
-        let steps = steps << halvings;
+        let length = self.analysis.model.shapes.mesh().length();
+        let steps = self.plan(kind).0 << halvings;
         let advance = (self.settings.approach + length + wheelbase) / steps as f64;
         let beyond = usize::from(self.settings.tail != Tail::Fixed(0.0));
+        let behind = self.vehicle(kind).assembly().contacts.iter().map(|contact| contact.behind).collect();
+        Advance { start: -self.settings.approach, advance, behind, steps, beyond }
+    }
+
+    /// The geometry of a kind whose step is halved so many times, laid out for many samples or not.
+    pub fn table(&self, march: March, laid_out: bool) -> Table {
+        let Analysis { model, rows, responses, .. } = &*self.analysis;
+        let (vehicle, length) = (self.vehicle(march.0), model.shapes.mesh().length());
         let pavement = Pavement {
             road: self.settings.road.off(self.settings.road.datum(-self.settings.approach, length)),
             start: -self.settings.approach,
@@ -233,20 +241,14 @@ impl Study {
             ramp: self.settings.ramp,
             direction: 1.0,
         };
-        let path = Advance {
-            start: -self.settings.approach,
-            advance,
-            behind: contacts.iter().map(|contact| contact.behind).collect(),
-            steps,
-            beyond,
-        };
-        let slopes = !contacts.iter().all(|contact| contact.law.is_plain());
+        let slopes = !vehicle.assembly().contacts.iter().all(|contact| contact.law.is_plain());
         let ground = Ground { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
-        Table::new(path, &model.shapes, (rows, responses, &self.look), slopes, ground)
+        Table::new(self.path(march), &model.shapes, (rows, responses, &self.look), slopes, ground, laid_out)
     }
 
-    /// How often the step of each sample must be halved: a function of the sample alone.
-    fn marches(&self, samples: &Samples) -> Result<Vec<March>, Error> {
+    /// How often the step of each sample must be halved: a function of the sample alone. Samples that would take too many
+    /// steps are told, in order.
+    fn marches(&self, samples: &Samples) -> (Vec<March>, Vec<Failure>) {
         let beta = self.settings.beta;
         // Squared frequencies of bridge, vehicle and tyres on the bridge, of each kind as it is.
         let model = &self.analysis.model;
@@ -310,11 +312,18 @@ impl Study {
             }
             Ok((kind, halvings))
         };
-        if samples.alike() && samples.kinds.is_empty() && samples.count > 0 {
-            let all = march(0)?;
-            return Ok(vec![all; samples.count]);
-        }
-        (0..samples.count).map(march).collect()
+        let of_all = samples.alike() && samples.kinds.is_empty();
+        let first = (of_all && samples.count > 0).then(|| march(0));
+        let mut lost = Vec::new();
+        let mut found = |sample: usize| match first.clone().unwrap_or_else(|| march(sample)) {
+            Ok(march) => march,
+            Err(cause) => {
+                lost.push(Failure { sample, step: None, cause });
+                (samples.kind(sample), 0)
+            }
+        };
+        let marches = (0..samples.count).map(&mut found).collect();
+        (marches, lost)
     }
 
     /// Refuses factors on what a vehicle does not have.

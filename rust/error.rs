@@ -13,6 +13,16 @@ pub enum Error {
         /// What is allowed.
         allowed: String,
     },
+    /// What would take more memory than this machine has left.
+    #[error("{key} = {value}: {allowed}")]
+    Memory {
+        /// Name of the argument that asks for it.
+        key: String,
+        /// Its value.
+        value: String,
+        /// How much, and what would take less.
+        allowed: String,
+    },
     /// The supports leave a rigid-body motion free.
     #[error(
         "unstable bridge: supports = [{supports}] leave it free to {motion}; \
@@ -121,6 +131,11 @@ impl Error {
         }
     }
 
+    /// An [`Error::Memory`] from its parts.
+    pub fn memory(key: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Error::Memory { key: key.into(), value: tidy(&value.to_string()), allowed: allowed.into() }
+    }
+
     /// The same about one of several: `place` goes in front of the name of what is refused.
     pub fn within(self, place: &str) -> Self {
         match self {
@@ -133,7 +148,11 @@ impl Error {
     pub fn is_input(&self) -> bool {
         matches!(
             self,
-            Error::Input { .. } | Error::Unstable { .. } | Error::Mechanism { .. } | Error::StepTooLong { .. }
+            Error::Input { .. }
+                | Error::Memory { .. }
+                | Error::Unstable { .. }
+                | Error::Mechanism { .. }
+                | Error::StepTooLong { .. }
         )
     }
 }

@@ -9,6 +9,7 @@
 //! into responses, and the [`survey`] of a history into the [`envelope`] of their extremes; [`analysis`] joins it all up.
 
 pub mod error;
+pub mod memory;
 
 pub mod along;
 pub mod bridge;

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::flexibility::{Action, Actions, Flexibility, Structure};
 use crate::float_mode::Standard;
 use crate::line::Line;
+use crate::memory;
 
 /// Residual and orthogonality demanded of every solve, relative to the largest eigenvalue and to one.
 const TOLERANCE: f64 = 1e-10;
@@ -35,6 +36,7 @@ impl Modes {
         if count == 0 || count > n {
             return Err(Error::input("modes", count, format!("must be 1 to {n}, the number of masses that can move")));
         }
+        check_matrices(n)?;
         let nodes: Vec<usize> = stations.iter().map(|s| flexibility.mesh().node_at(s.at)).collect();
         let masses: Vec<f64> = stations.iter().map(|s| s.mass).collect();
         Modes::of_matrices(&flexibility.matrix(&nodes, &nodes, Structure::Actual), &masses, count)
@@ -46,6 +48,7 @@ impl Modes {
         if count == 0 || count > n {
             return Err(Error::input("modes", count, format!("must be 1 to {n}, the number of masses that can move")));
         }
+        check_matrices(n)?;
         let root: Vec<f64> = masses.iter().map(|m| m.sqrt()).collect();
         // F is symmetric by Maxwell; rounding is taken out so that either triangle says the same.
         let a = Mat::from_fn(n, n, |i, j| root[i] * 0.5 * (f[(i, j)] + f[(j, i)]) * root[j]);
@@ -107,6 +110,13 @@ impl Modes {
         let inertia: Vec<Actions> = (0..self.len()).map(of_mode).collect();
         flexibility.each_deflected(&inertia, Structure::Actual)
     }
+}
+
+/// Refuses more masses than there is memory for: the flexibility, its product with the masses, its vectors, and what it
+/// takes to find these.
+fn check_matrices(masses: usize) -> Result<(), Error> {
+    let bytes = 8.0 * size_of::<f64>() as f64 * (masses as f64).powi(2);
+    memory::check("stations", masses, bytes, f64::INFINITY, "the matrices of so many masses", "use fewer")
 }
 
 /// Turns the vectors of each repeated eigenvalue within their space: at the station where the space is largest, all

@@ -356,6 +356,30 @@ impl Rows {
         (dynamic, at_rest)
     }
 
+    /// One block of responses to coordinates and to loads at their places.
+    #[inline(always)]
+    pub fn block_of(
+        &self,
+        b: usize,
+        coordinates: impl Iterator<Item = f64>,
+        loads: impl Iterator<Item = (Place, f64)>,
+    ) -> Block {
+        let mut values = [0.0; WIDTH];
+        for (factor, a) in self.factors[b * self.width..(b + 1) * self.width].iter().zip(coordinates) {
+            for i in 0..WIDTH {
+                values[i] += factor[i] * a;
+            }
+        }
+        for (place, load) in loads {
+            let Some((panel, f)) = place else { continue };
+            let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + b];
+            for i in 0..WIDTH {
+                values[i] += (c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))) * load;
+            }
+        }
+        values
+    }
+
     /// All instants of a history made ready.
     pub fn pack_history(&self, history: &History) -> Packed {
         let mut packed = Packed::default();

@@ -3,6 +3,7 @@
 use crate::course::Course;
 use crate::crossing::ModalBridge;
 use crate::error::Error;
+use crate::memory;
 use crate::settings::{Settings, Tail};
 use crate::tail::most_steps;
 
@@ -73,7 +74,8 @@ impl Steps {
         let steps = count + tail / longest;
         let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
         let coordinates: usize = courses.iter().map(|course| course.vehicle.assembly().mass.nrows() + 1).sum();
-        let bytes = bytes(modes, axles, coordinates);
+        let frictions: usize = courses.iter().map(|course| course.vehicle.assembly().frictions.len()).sum();
+        let bytes = bytes(modes, axles, coordinates, frictions);
         let blamed = |most: f64| {
             let first = settings.approach / courses[0].speed.max(1e-300);
             let late = courses.iter().map(|course| course.entry).fold(0.0, f64::max);
@@ -107,15 +109,9 @@ impl Steps {
             }
             return Err(Error::input(key, value, allowed));
         }
-        if steps * bytes > MAX_HISTORY_BYTES {
-            let allowed = format!(
-                "{steps:.3e} steps would take {:.1} GB of memory, more than {:.1}: use fewer modes or a longer step",
-                steps * bytes / 1e9,
-                MAX_HISTORY_BYTES / 1e9
-            );
-            let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
-            return Err(Error::input(key, value, allowed));
-        }
+        let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
+        let mend = "use fewer modes or a longer step";
+        memory::check(key, value, steps * bytes, MAX_HISTORY_BYTES, &format!("{steps:.3e} steps"), mend)?;
         let (h, advance) = match courses {
             [course] if course.is_steady() => {
                 let advance = course.path(settings, length) / count;
@@ -136,8 +132,8 @@ impl Steps {
 
 /// Bytes of a step: a row of the history, one of the same made ready for recovery, and one of the table of mode shapes
 /// under the axles.
-pub fn bytes(modes: usize, axles: usize, coordinates: usize) -> f64 {
-    (size_of::<f64>() * (1 + 3 * coordinates + 5 * modes + 10 * axles + 3 * modes * axles)) as f64
+pub fn bytes(modes: usize, axles: usize, coordinates: usize, frictions: usize) -> f64 {
+    (size_of::<f64>() * (1 + 3 * coordinates + frictions + 7 * modes + 12 * axles + 3 * modes * axles)) as f64
 }
 
 /// Steps that a crossing of so many, of so many bytes each, may have besides.

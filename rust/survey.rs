@@ -311,15 +311,15 @@ impl Interpolated {
 ///
 /// Looked at in every step, so without a branch: the number of an instant is an `f64` and chosen along with the value.
 #[derive(Debug, Clone, Copy)]
-struct Watched {
-    max: Block,
-    max_at: Block,
-    min: Block,
-    min_at: Block,
+pub(crate) struct Watched {
+    pub(crate) max: Block,
+    pub(crate) max_at: Block,
+    pub(crate) min: Block,
+    pub(crate) min_at: Block,
 }
 
 impl Watched {
-    const NOTHING: Self = Watched {
+    pub(crate) const NOTHING: Self = Watched {
         max: [f64::NEG_INFINITY; WIDTH],
         max_at: [0.0; WIDTH],
         min: [f64::INFINITY; WIDTH],
@@ -327,7 +327,7 @@ impl Watched {
     };
 
     #[inline(always)]
-    fn take(&mut self, values: &Block, instant: f64) {
+    pub(crate) fn take(&mut self, values: &Block, instant: f64) {
         for (i, &value) in values.iter().enumerate() {
             let (above, below) = (value > self.max[i], value < self.min[i]);
             self.max[i] = if above { value } else { self.max[i] };

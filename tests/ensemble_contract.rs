@@ -52,6 +52,45 @@ fn a_long_portion_is_as_good_as_short_ones() {
     assert_eq!(long.hash(), run_in_chunks(&study, &samples, widest, 2, 8).results.hash());
 }
 
+/// Of every kind as many samples as come one by one, and more, which come side by side: the same bits, and those of
+/// single crossings; kinds of several vehicles too.
+#[test]
+fn kinds_of_few_samples_are_as_good_as_kinds_of_many() {
+    let vehicles = [
+        kishan_vehicle(),
+        half_car([700.0, 1100.0], 1.0, 0.3, Friction::coulomb(8e3)),
+        articulated(1.0, 0.0),
+        hs20(1.0),
+        Vehicle::moving_masses(&[500.0, 800.0], &[0.0, -3.1]).unwrap(),
+        Vehicle::force_train(&[3e4, 8e4, 7e4], &[0.0, -2.9, -4.3]).unwrap(),
+    ];
+    let number = vehicles.len();
+    for tail in [Tail::Fixed(0.0), Tail::Fixed(0.7), Tail::Free] {
+        let settings = Settings { approach: 6.0, tail, ..Settings::at_speed(1.0) };
+        let kinds: Vec<Vec<Passage>> = vehicles.iter().map(|vehicle| vec![Passage::of(vehicle.clone())]).collect();
+        let analysis = kishan_analysis(9, Recovery::ForceSummation);
+        let study = Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap();
+        assert!(study.shares);
+        // Six of each kind, of which any that follow each other are few.
+        let count = 6 * number;
+        let kinds = (0..count).map(|i| (i % number) as u32).collect();
+        let samples = Samples { kinds, ..Samples::at_speed(3, count, 21.0) };
+        let many = run(&study, &samples, Isa::chosen().unwrap(), 2);
+        check_alone(&study, &samples, &many, "many");
+        for few in [1, 2, 3 * number] {
+            for start in (0..count - few + 1).step_by(few) {
+                let own = some(&samples, start..start + few);
+                let found = run(&study, &own, Isa::chosen().unwrap(), 2);
+                assert_eq!(found.results.digests, many.results.digests[start..start + few], "{few} from {start}");
+                if few == 1 && start < number {
+                    check_alone(&study, &own, &found, "few");
+                }
+            }
+        }
+        assert!(many.at_rest.iter().flatten().all(|value| value.is_finite()));
+    }
+}
+
 /// With everything that a study allows, and all of it at work.
 #[test]
 fn nothing_about_the_work_changes_a_bit_of_a_mixed_study() {
@@ -60,11 +99,10 @@ fn nothing_about_the_work_changes_a_bit_of_a_mixed_study() {
     let (results, layout) = (&found.results, found.results.layout);
     let lifted = |sample: usize| row(results, sample).1[2 * (layout.responses + layout.axles)..].iter().any(|&n| n > 0);
     let lifting = (0..samples.count).filter(|&sample| lifted(sample)).count();
-    let halvings: Vec<u32> = found.clock.paces.iter().map(|pace| pace.halvings).collect();
-    println!("{lifting} of {} lift off; steps halved {halvings:?} times", samples.count);
+    println!("{lifting} of {} lift off; marches {:?}", samples.count, found.marches);
     assert!(lifting > 5, "{lifting}");
     // Both kinds with and without halved steps.
-    assert!(halvings.len() >= 4, "{halvings:?}");
+    assert!(found.marches.len() >= 4, "{:?}", found.marches);
     check_ways(&study, &samples, &[0, 1, 2, 33, 69]);
     check_alone(&study, &samples, &found, "mixed");
 }

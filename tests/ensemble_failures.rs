@@ -90,7 +90,7 @@ fn a_vehicle_that_cannot_be() {
 fn a_step_that_is_not_finite() {
     let study = study(Vehicle::moving_masses(&[500.0], &[0.0]).unwrap(), 0.3);
     let of = |bad: f64| samples(Parameter::BodyMass, 1, 1.0, bad);
-    let advance = run(&study, &of(1.0), Isa::Scalar, 1).clock.paces[0].advance;
+    let advance = study.path((0, 0)).advance;
     for failure in check(&study, &of(1e304), &of(1.0)) {
         let Error::NotFinite { time, position, .. } = failure.cause else { panic!("{:?}", failure.cause) };
         let step = failure.step.unwrap();
@@ -166,6 +166,48 @@ fn crossings_one_by_one_tell_the_step() {
         // After the entry, in steps of milliseconds.
         assert!(time > 0.25 && (1e-5..1e-2).contains(&(time / step as f64)), "{time} s, step {step}");
     }
+}
+
+/// A sample that would take too many steps is marked on both paths, and the others are as they are without it.
+#[test]
+fn samples_that_would_take_too_long() {
+    for shares in [true, false] {
+        let passage = Passage { entry: if shares { 0.0 } else { 0.25 }, ..Passage::of(kishan_vehicle()) };
+        let settings = Settings { approach: 6.0, ..Settings::at_speed(1.0) };
+        let analysis = kishan_analysis(9, Recovery::ForceSummation);
+        let advance = shares.then_some(0.1);
+        let study = Study::new(analysis, vec![vec![passage]], settings, None, advance, &ALL).unwrap();
+        assert_eq!(study.shares, shares);
+        let with = |bad: f64| {
+            let speeds = (0..COUNT).map(|i| if BAD.contains(&i) { bad } else { 20.0 }).collect();
+            Samples { speeds, ..Samples::at_speed(11, COUNT, 1.0) }
+        };
+        let (marked, whole) = (run(&study, &with(1e-5), Isa::Scalar, 2), run(&study, &with(20.0), Isa::Scalar, 1));
+        assert!(whole.results.failures.is_empty(), "{:?}", whole.results.failures);
+        let failed: Vec<usize> = marked.results.failures.iter().map(|failure| failure.sample).collect();
+        assert_eq!(failed, BAD);
+        for failure in &marked.results.failures {
+            let cause = failure.cause.to_string();
+            assert!(failure.step.is_none() && cause.contains("speed") && cause.contains("steps"), "{cause}");
+        }
+        for isa in Isa::present() {
+            let again = run_in_chunks(&study, &with(1e-5), isa, 2, 7).results;
+            assert_eq!((again.hash(), &again.failures), (marked.results.hash(), &marked.results.failures));
+        }
+        for sample in 0..COUNT {
+            let (numbers, instants) = row(&marked.results, sample);
+            if BAD.contains(&sample) {
+                assert!(numbers.iter().all(|v| v.is_nan()) && instants.iter().all(|&i| i == 0), "sample {sample}");
+            } else {
+                assert_eq!(marked.results.digests[sample], whole.results.digests[sample], "sample {sample}");
+            }
+        }
+    }
+    // What is asked too much of all is refused.
+    let study = study(kishan_vehicle(), 0.0);
+    let all = Samples::at_speed(0, 3, 1e-5);
+    let message = study.run(&all, &Workers::new(None).unwrap(), &Progress::default()).unwrap_err().to_string();
+    assert!(message.contains("speed") && message.contains("steps"), "{message}");
 }
 
 /// What a single crossing refuses, a study does.

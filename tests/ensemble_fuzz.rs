@@ -224,12 +224,12 @@ fn check(case: Case) -> Result<(), TestCaseError> {
         // The largest is not less than the smallest, and every instant is one.
         let sides = column(results, sample, Column::Responses).split_at(layout.responses);
         prop_assert!(sides.0.iter().zip(sides.1).all(|(max, min)| max >= min));
-        let pace = &found.clock.paces[results.marches[sample] as usize];
-        let tail = column(results, sample, Column::Tail)[0];
-        let last = pace.steps as f64 + tail * samples.speed(sample, 0) / pace.advance + 1.0;
+        let (march, speed) = (results.marches[sample], samples.speed(sample, 0));
+        let path = study.path(found.marches[march as usize]);
+        let last = path.steps as f64 + column(results, sample, Column::Tail)[0] * speed / path.advance + 1.0;
         for &instant in &instants[..2 * layout.responses] {
             let known = match stop_or_step(instant) {
-                Ok(stop) => stop < pace.stops.len(),
+                Ok(_) => found.clock.when(march, speed, instant).0.is_finite(),
                 Err(step) => step as f64 <= last,
             };
             prop_assert!(known, "instant {}", instant);

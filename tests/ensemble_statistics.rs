@@ -34,12 +34,12 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
     let length = study.analysis.rows.mesh().length();
     let (mut lifts, mut at_the_end) = (0, 0);
     for sample in 0..samples.count {
-        let pace = &found.clock.paces[results.marches[sample] as usize];
-        let single = alone(study, samples, sample, pace.advance).unwrap();
+        let path = study.path(found.marches[results.marches[sample] as usize]);
+        let single = alone(study, samples, sample, path.advance).unwrap();
         let (history, axles) = (&single.history, single.history.axles);
         let on_bridge = |i: &usize| history.positions[i * axles..][..axles].iter().any(|x| (0.0..=length).contains(x));
         let first = (0..history.len()).find(on_bridge).unwrap();
-        let there = first..pace.steps + 1;
+        let there = first..path.steps + 1;
         let count = there.len() as f64;
         let near = |what: &str, value: f64, expected: f64, scale: f64| {
             let off = (value - expected).abs();
@@ -253,12 +253,12 @@ fn halvings_are_a_function_of_the_sample_alone() {
             let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
             assert!(found.results.failures.is_empty(), "{name}: {:?}", found.results.failures);
             let halved =
-                |run: &spanwise::ensemble::Run, i: usize| run.clock.paces[run.results.marches[i] as usize].halvings;
+                |run: &spanwise::ensemble::Run, sample: usize| run.marches[run.results.marches[sample] as usize].1;
             assert!((0..count).any(|sample| halved(&found, sample) > 0), "{name}: nobody is slow");
             for sample in 0..count {
                 let own = run(&study, &some(&samples, sample..sample + 1), Isa::Scalar, 1);
                 assert_eq!(halved(&own, 0), halved(&found, sample), "{name}, sample {sample}");
-                let way = found.clock.paces[found.results.marches[sample] as usize].advance;
+                let way = study.path(found.marches[found.results.marches[sample] as usize]).advance;
                 let (taken, limit) = (way / samples.speed(sample, 0), stability_limit(&study, &samples, sample));
                 assert!(taken <= limit * (1.0 + 1e-8), "{name}, sample {sample}: {taken} s, stable up to {limit} s");
                 assert!(step.is_none_or(|step| taken <= step * (1.0 + 1e-8)), "{name}, sample {sample}: {taken} s");

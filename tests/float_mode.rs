@@ -148,6 +148,7 @@ fn runs_do_not_depend_on_the_mode_of_the_caller() {
         let (found, left) = in_mode(other, || run(&study, &samples, Isa::Scalar, 2));
         assert_eq!(found.results.hash(), expected.results.hash(), "{other:#x}");
         assert_eq!(found.clock, expected.clock);
+        assert_eq!(found.marches, expected.marches);
         assert_eq!(left, other);
     }
 }

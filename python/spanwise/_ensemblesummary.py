@@ -129,8 +129,8 @@ def _tail(ensemble: Ensemble) -> Iterator[str]:
         return
     row = int(np.argmax(growths))
     yield (
-        f"note      in {_many(early)} free vibration after the end can exceed an extreme by more "
-        "than 1 %,"
+        f"note      in {many(early, 'sample')} free vibration after the end can exceed an extreme "
+        "by more than 1 %,"
     )
     yield (
         f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)}, by "

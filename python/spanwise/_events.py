@@ -199,15 +199,19 @@ def speeds_told(
     by_vehicle = isinstance(given, np.ndarray) and given.shape[1:] == used.shape[1:]
     width = used.shape[1] if by_vehicle else 1
     before = np.reshape(given, (-1, width))
-    columns = np.broadcast_to(before, (samples, width)).copy()
+    columns = np.broadcast_to(before, (samples, width))
+    # What each kind brings, as far as it does: kinds may be as many as samples.
+    brought = np.full((len(events), width), np.nan)
     for number, event in enumerate(events):
-        rows = kinds == number if len(events) > 1 else slice(None)
         for k in range(width):
             own = {each.speed for each in (event[k : k + 1] if by_vehicle else event)}
-            # One number cannot tell several, and what nothing uses must not differ.
-            told = not by_vehicle or len(events) == 1 or used[:, k].any()
-            if told and len(own) == 1 and (speed := own.pop()) is not None:
-                columns[rows, k] = speed
+            if len(own) == 1 and (speed := own.pop()) is not None:
+                brought[number, k] = speed
+    # One number cannot tell several, and what nothing uses must not differ.
+    if by_vehicle and len(events) > 1:
+        brought[:, ~used.any(axis=0)] = np.nan
+    own_speeds = brought[kinds] if len(events) > 1 else brought[:1]
+    columns = np.where(np.isnan(own_speeds), columns, own_speeds)
     if (columns == before).all():
         return speeds
     values = columns.reshape(given.shape) if isinstance(given, np.ndarray) else columns[:, 0]
@@ -232,11 +236,8 @@ def speeds_by_kind(
         return speeds if own is None else Speeds(speeds.given, np.array([own]))
     if all(passage.speed is None for (passage,) in events):
         return speeds
-    column = np.broadcast_to(speeds.column, samples).copy()
-    for number, ((passage,)) in enumerate(events):
-        if passage.speed is not None:
-            column[kinds == number] = passage.speed
-    return Speeds(speeds.given, column)
+    brought = np.array([np.nan if each.speed is None else each.speed for (each,) in events])[kinds]
+    return Speeds(speeds.given, np.where(np.isnan(brought), speeds.column, brought))
 
 
 def core_passage(passage: Passage, *, own_speed: bool) -> _core._Passage:

@@ -164,6 +164,9 @@ def ensemble(
     their speed, road, masses and springs; they march side by side. All others are crossings of
     their own, which takes about ten times as long for each.
 
+    There may be as many kinds of event as samples: memory is taken for the results and, on each
+    thread, for one kind at a time. A kind of a few samples takes about as long for each as `cross`.
+
     Where steps in time would not be the same for all samples, the step of each is that of the kind
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.

@@ -3,12 +3,13 @@
 
 use std::ops::Range;
 
+use super::few;
 use super::look::Look;
 use super::shared::Shared;
 use super::simd::{Lanes, Work};
 use super::stretch::{Stretch, Widths};
 use super::survey::survey;
-use super::table::{CHUNK, Chunk, Table};
+use super::table::{CHUNK, Chunk, Moment, Table};
 use super::watch::{Ride, Watched, watch_moment, watch_stop};
 use crate::lane::Lane;
 use crate::newmark::Coordinate;
@@ -137,7 +138,7 @@ impl Way<'_> {
 }
 
 /// Most numbers that a group keeps of a stretch of steps.
-const KEPT: usize = 1 << 15;
+pub const KEPT: usize = 1 << 15;
 
 /// Chunks of a stretch, at most.
 fn longest(widths: &Widths) -> usize {
@@ -150,6 +151,7 @@ pub struct Scratch<L> {
     stretch: Stretch<L>,
     glanced: Vec<[L; 2]>,
     between: Vec<L>,
+    moment: Moment,
     chunks: Vec<Chunk>,
 }
 
@@ -157,7 +159,7 @@ impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
         let (stretch, glanced) = (Stretch::new(), Vec::new());
-        Scratch { stretch, glanced, between: Vec::new(), chunks: Vec::new() }
+        Scratch { stretch, glanced, between: Vec::new(), moment: Moment::default(), chunks: Vec::new() }
     }
 }
 
@@ -385,6 +387,7 @@ struct Looking<'s, L> {
     stop: &'s mut usize,
     stretch: &'s mut Stretch<L>,
     between: &'s mut Vec<L>,
+    moment: &'s mut Moment,
 }
 
 impl<L: Lane> Work for Looking<'_, L> {
@@ -408,7 +411,8 @@ impl<L: Lane> Work for Looking<'_, L> {
         while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
             let sides = [stretch.row(next.step - 1), stretch.row(next.step)];
             let before = (next.step > last).then(|| seen.stops.clone());
-            watch_stop(&mut seen.stops, &way.look.rows, next, *stop, sides, &widths, jumps, self.between);
+            let moment = way.table.moment(*stop, way.rows, way.look, self.moment);
+            watch_stop(&mut seen.stops, way.look, (next, *stop, moment), sides, &widths, jumps, self.between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
             for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
@@ -437,6 +441,23 @@ impl<L: Lane> Work for Surveying<'_, L> {
     }
 }
 
+/// Looks at the responses at the steps of a stretch, with axles on the bridge or not.
+fn look_at_steps<L: Lanes>(
+    way: &Way<'_>,
+    watched: &mut [Watched<L>],
+    stretch: &Stretch<L>,
+    loaded: bool,
+    (glanced, own_chunks): (&mut Vec<[L; 2]>, &mut Vec<Chunk>),
+) {
+    let Way { table, rows, look, .. } = *way;
+    let steps = stretch.from..stretch.from + stretch.steps;
+    if L::SAMPLES == 1 && !table.laid_out {
+        return few::survey(watched, rows, look, stretch, if loaded { table.places(steps) } else { &[] });
+    }
+    let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
+    L::dispatch(Surveying { watched, look, stretch, chunks, glanced });
+}
+
 /// Marches a group of samples through the table.
 pub fn march<L: Lanes>(
     way: &Way<'_>,
@@ -450,7 +471,7 @@ pub fn march<L: Lanes>(
     let bodies = group.bodies.len();
     let widths = way.widths(bodies);
     let longest = longest(&widths);
-    let Scratch { stretch, glanced, between, chunks: own_chunks } = scratch;
+    let Scratch { stretch, glanced, between, moment, chunks: own_chunks } = scratch;
     let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
     let speed = group.geometry.speed;
     let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
@@ -503,14 +524,14 @@ pub fn march<L: Lanes>(
             stop: &mut stop,
             stretch,
             between,
+            moment,
         };
         L::dispatch(looking);
         if to == end || stretch.steps == most * CHUNK {
             // On the approach the bridge is at rest.
             if place != Where::Approach {
                 let loaded = place == Where::Bridge;
-                let chunks = loaded.then(|| table.chunks(stretch.from, to, rows, look, own_chunks));
-                L::dispatch(Surveying { watched: &mut seen.steps, look, stretch, chunks, glanced });
+                look_at_steps(way, &mut seen.steps, stretch, loaded, (glanced, own_chunks));
             }
             stretch.go_on();
             if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
@@ -555,48 +576,52 @@ fn combine<L: Lane>(of_one: &[f64], loads: &[L], row: &mut [L]) {
     }
 }
 
-/// Static loads going over the bridge.
+/// The static extremes under loads that differ from sample to sample.
+pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
+    let Way { table, rows, look, .. } = *way;
+    let widths = Widths { felt: true, ..way.widths(0) };
+    let (width, axles) = (widths.coordinates, widths.axles);
+    let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
+    let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Stretch::new());
+    let longest = longest(&widths);
+    for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
+        let end = (start + longest * CHUNK).min(table.path.steps + 1);
+        stretch.begin(widths, start, (end - start).div_ceil(CHUNK));
+        L::dispatch(Resting { way, loads, steps: start..end, stretch: &mut stretch });
+        look_at_steps(way, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
+    }
+    let mut own_moment = Moment::default();
+    let mut then = vec![L::splat(0.0); width + axles];
+    for (number, stop) in table.stops.iter().enumerate() {
+        let moment = table.moment(number, rows, look, &mut own_moment);
+        combine(&moment.statics, loads, &mut then);
+        watch_moment(&mut seen.stops, look, (stop, number, moment), &then);
+    }
+    seen
+}
+
+/// Static loads going over the bridge: a stretch of steps.
 struct Resting<'s, L> {
     way: &'s Way<'s>,
     loads: &'s [L],
+    steps: Range<usize>,
+    stretch: &'s mut Stretch<L>,
 }
 
 impl<L: Lane> Work for Resting<'_, L> {
-    type Output = Seen<L>;
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> Seen<L> {
-        let Resting { way, loads } = self;
-        let Way { table, rows, look, .. } = *way;
-        let widths = Widths { felt: true, ..way.widths(0) };
-        let (width, axles) = (widths.coordinates, widths.axles);
-        let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-        let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Stretch::new());
-        let longest = longest(&widths);
-        for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
-            let end = (start + longest * CHUNK).min(table.path.steps + 1);
-            stretch.begin(widths, start, (end - start).div_ceil(CHUNK));
-            for from in (start..end).step_by(CHUNK) {
-                let to = end.min(from + CHUNK);
-                for step in from..to {
-                    let [_, row] = stretch.row_mut(step);
-                    combine(&table.statics[step * axles * width..(step + 1) * axles * width], loads, row);
-                }
-                stretch.take(to - from);
+    fn run(self) {
+        let Resting { way, loads, steps, stretch } = self;
+        let mut scratch = Vec::new();
+        for from in steps.clone().step_by(CHUNK) {
+            let to = steps.end.min(from + CHUNK);
+            for step in from..to {
+                let [_, row] = stretch.row_mut(step);
+                combine(way.table.statics(step, way.rows, &mut scratch), loads, row);
             }
-            let chunks = table.chunks(start, end, rows, look, &mut own_chunks);
-            survey(&mut seen.steps, &look.rows, &stretch, Some(chunks), &mut glanced);
+            stretch.take(to - from);
         }
-        for (number, stop) in table.stops.iter().enumerate() {
-            let mut then = vec![L::splat(0.0); width + axles];
-            combine(&stop.statics, loads, &mut then);
-            watch_moment(&mut seen.stops, &look.rows, stop, number, &then);
-        }
-        seen
     }
-}
-
-/// The static extremes under loads that differ from sample to sample.
-pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
-    L::dispatch(Resting { way, loads })
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::record;
-use super::table::{Stop, Table};
+use super::table::{Advance, Stop};
 use super::together;
 
 /// The steps of one kind of march, and its stops.
@@ -24,15 +24,15 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// That of a march on this table.
-    pub fn new(table: &Table, halvings: u32) -> Self {
+    /// That of a march that moves like this, with these stops, its step halved so often.
+    pub fn new(path: &Advance, stops: &[Stop], halvings: u32) -> Self {
         let stop = |stop: &Stop| (stop.step as u32, stop.fraction, stop.position);
         Pace {
-            start: table.path.x(0, 0),
-            advance: table.path.advance,
-            steps: table.path.steps,
+            start: path.x(0, 0),
+            advance: path.advance,
+            steps: path.steps,
             halvings,
-            stops: table.stops.iter().map(stop).collect(),
+            stops: stops.iter().map(stop).collect(),
         }
     }
 

@@ -25,6 +25,14 @@ pub struct Look {
     pub row_of: Vec<usize>,
     /// Whether each chosen response is a deflection.
     pub deflections: Vec<bool>,
+    /// By response, the row that stands for it, if it is looked at.
+    row_for: Vec<Option<usize>>,
+    /// Where extremes are looked for as an axle passes, from left to right: node, position [m], and which of [`Look::asked`].
+    pub places: Vec<(usize, f64, usize)>,
+    /// Rows to look at there: deflection, moment and shears of each section, and last, for the ends, all.
+    pub asked: Vec<Vec<usize>>,
+    /// The rows of the shears just inside the left and the right end, with the sign with which an axle on that end adds.
+    pub tips: [Option<(usize, f64)>; 2],
 }
 
 impl Look {
@@ -33,7 +41,18 @@ impl Look {
         let deflections = responses.range(Quantity::Deflection);
         let ends = [0, rows.mesh().panels()];
         let sections = responses.sections().len();
-        let mut look = Look { chosen: Vec::new(), rows: Vec::new(), row_of: Vec::new(), deflections: Vec::new() };
+        let mut look = Look {
+            chosen: Vec::new(),
+            rows: Vec::new(),
+            row_of: Vec::new(),
+            deflections: Vec::new(),
+            row_for: vec![None; responses.len()],
+            places: Vec::new(),
+            asked: Vec::new(),
+            tips: [None; 2],
+        };
+        // By response, so that many sections are no more work each than few.
+        let mut own_row: Vec<Option<usize>> = vec![None; responses.len()];
         for &quantity in quantities {
             for (section, response) in responses.range(quantity).enumerate() {
                 // But at stations, supports and ends, the shears left and right of a section differ only while an axle
@@ -41,11 +60,14 @@ impl Look {
                 // to the one inside.
                 let shear = quantity == Quantity::ShearRight && !ends.contains(&responses.sections()[section]);
                 let twin = shear
-                    .then(|| look.rows.iter().position(|row| row.response == response - sections))
+                    .then(|| own_row[response - sections])
                     .flatten()
                     .filter(|&twin| rows.same(look.rows[twin].response, response));
-                look.row_of.push(twin.unwrap_or(look.rows.len()));
+                let row = twin.unwrap_or(look.rows.len());
+                look.row_of.push(row);
+                look.row_for[response] = Some(row);
                 if twin.is_none() {
+                    own_row[response] = Some(row);
                     let factors: Vec<f64> = (0..rows.width()).map(|i| rows.factor(response, i)).collect();
                     let turned = factors.iter().map(|&factor| usize::from(factor < 0.0)).collect();
                     look.rows.push(Row { response, factors, turned });
@@ -54,6 +76,7 @@ impl Look {
                 look.deflections.push(deflections.contains(&response));
             }
         }
+        look.find_places(rows, responses);
         look
     }
 
@@ -62,8 +85,31 @@ impl Look {
         self.row_of.iter().position(|&r| r == row).unwrap_or(0)
     }
 
+    /// Every section and both ends, as [`crate::survey`] looks for their passing.
+    fn find_places(&mut self, rows: &Rows, responses: &Responses) {
+        let (nodes, last) = (rows.mesh().nodes(), rows.mesh().panels());
+        let sections = responses.sections();
+        let count = sections.len();
+        let inner = sections.iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
+        self.places = inner.map(|(section, &node)| (node, nodes[node], section)).collect();
+        self.places.extend([(0, nodes[0], count), (last, nodes[last], count)]);
+        self.places.sort_unstable_by_key(|place| place.0);
+        let own = |section: usize| {
+            let mut rows: Vec<usize> = (0..4).filter_map(|quantity| self.row(quantity * count + section)).collect();
+            rows.dedup();
+            rows
+        };
+        self.asked = (0..count).map(own).collect();
+        self.asked.push((0..self.rows.len()).collect());
+        let shear = |quantity: Quantity, node: usize, sign: f64| {
+            let section = sections.iter().position(|&s| s == node)?;
+            Some((self.row(responses.range(quantity).start + section)?, sign))
+        };
+        self.tips = [shear(Quantity::ShearRight, 0, -1.0), shear(Quantity::ShearLeft, last, 1.0)];
+    }
+
     /// The row that stands for a response, if it is looked at.
     pub fn row(&self, response: usize) -> Option<usize> {
-        self.chosen.iter().position(|&r| r == response).map(|place| self.row_of[place])
+        self.row_for[response]
     }
 }

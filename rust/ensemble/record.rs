@@ -98,9 +98,9 @@ impl Layout {
         self.range(Column::Tail).end
     }
 
-    /// Bytes of a sample, with its march, digest and what it takes to sort it in.
+    /// Bytes of a sample, with its march, digest, and what it takes to share it out and to sort it in.
     pub fn bytes(&self) -> f64 {
-        (8 * self.width() + 4 * self.instants() + 40) as f64
+        (8 * self.width() + 4 * self.instants() + 40 + size_of::<Record<'_>>()) as f64
     }
 
     /// Instants of a sample: of the extremes of responses and loads in the order of the numbers, then how often each axle

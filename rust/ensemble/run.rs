@@ -1,21 +1,22 @@
 //! A run of a study: samples in portions on all cores, and what comes of them.
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, OnceLock};
 
 use rayon::prelude::*;
 
-use super::clock::{Clock, Pace};
+use super::clock::Clock;
 use super::record::{Failure, Layout, Record, Results};
+use super::room::Room;
 use super::sample::Samples;
-use super::simd::{self, Isa, SAMPLES};
-use super::table::{Below, Table};
-use super::together::{self, Part, Task};
+use super::shelf::{FEW, Shared, Shelf};
+use super::simd::{self, InLanes, Isa, SAMPLES};
+use super::together::{Part, Task};
 use super::{March, Study, alone};
 use crate::error::Error;
 use crate::float_mode::Standard;
-use crate::recovery::Place;
+use crate::memory;
 use crate::threads;
 
 /// Most samples that a worker takes at a time unless told otherwise.
@@ -69,55 +70,74 @@ impl Study {
         let layout = self.layout(samples);
         let count = samples.count;
         check_room(count, &layout)?;
-        let own = if self.shares { self.marches(samples)? } else { vec![(0, 0); count] };
+        let (own, lost) = if self.shares { self.marches(samples) } else { (vec![(0, 0); count], Vec::new()) };
+        if let Some(failure) = lost.first().filter(|_| lost.len() == count) {
+            // What no sample can do is asked too much.
+            return Err(failure.cause.clone());
+        }
         let mut distinct: BTreeMap<March, Vec<u32>> = BTreeMap::new();
+        let mut failing = lost.iter().map(|failure| failure.sample).peekable();
         for (sample, march) in own.iter().enumerate() {
-            distinct.entry(*march).or_default().push(sample as u32);
+            let members = distinct.entry(*march).or_default();
+            if failing.next_if_eq(&sample).is_none() {
+                members.push(sample as u32);
+            }
         }
         let marches: Vec<March> = distinct.keys().copied().collect();
         let number: BTreeMap<March, u32> = marches.iter().zip(0..).map(|(&march, i)| (march, i)).collect();
         let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
-        drop(own);
-        self.check_tables(&marches, count as f64 * layout.bytes())?;
+        drop((own, number));
+        let room = Room::of(self, samples, &marches, workers, count as f64 * layout.bytes())?;
         let go_on = || !progress.stop.load(Ordering::Relaxed);
-        let mut tables: Vec<Arc<Table>> = Vec::new();
-        for &march in marches.iter().filter(|_| self.shares) {
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
-            tables.push(Arc::new(self.table(march)));
-        }
-        let couplings = vec![OnceLock::new(); marches.len()];
-        let order: Vec<u32> = distinct.values().flatten().copied().collect();
+        let order: Vec<u32> =
+            distinct.values().flatten().copied().chain(lost.iter().map(|failure| failure.sample as u32)).collect();
         let mut results = Results {
             layout,
-            numbers: vec![0.0; count * layout.width()],
-            instants: vec![0; count * layout.instants()],
+            numbers: memory::zeros("samples", count, count * layout.width())?,
+            instants: memory::zeros("samples", count, count * layout.instants())?,
             marches: of_samples,
-            digests: vec![0; count],
+            digests: memory::zeros("samples", count, count)?,
             failures: Vec::new(),
         };
-        let failures = Mutex::new(Vec::new());
         // A few portions for every thread, in whole groups of lanes.
-        let working = threads::of_use(workers.threads, count);
+        let working = threads::of_use(room.threads, count);
         let share = count.div_ceil(4 * working).next_multiple_of(SAMPLES).max(SAMPLES);
-        let portions = portions(&distinct, &mut results, workers.chunk.unwrap_or(share.min(BLOCK)));
+        let chunk = workers.chunk.unwrap_or(share.min(BLOCK));
+        let shelf = |(&march, members): (&March, &Vec<u32>)| {
+            Shelf::new(march, members.len() > FEW && room.lays_out(march), members.len().div_ceil(chunk))
+        };
+        let shelves: Vec<Shelf> = distinct.iter().filter(|_| self.shares).map(shelf).collect();
+        let lost_rows = lost.len();
+        let portions = portions(&distinct, &mut results, chunk);
+        progress.done.fetch_add(lost.len(), Ordering::Relaxed);
+        let failures = Mutex::new(lost);
         let work = || {
-            portions.into_par_iter().try_for_each(|portion| {
+            // In order, so that few marches are under way at a time.
+            portions.into_iter().par_bridge().try_for_each(|portion| {
                 let Portion { march, members, mut records, digests } = portion;
                 let mut failed = Vec::new();
-                let (kind, _) = marches[march];
-                if self.shares {
-                    let (table, couplings) = (&tables[march], &couplings[march]);
-                    let task = Task { study: self, layout, samples, kind, table, couplings };
+                if let Some(shelf) = shelves.get(march) {
+                    if !go_on() {
+                        return Err(Error::Interrupted);
+                    }
+                    let shared = shelf.take(self, &layout);
+                    let Shared { table, couplings } = &*shared;
+                    let task = Task { study: self, layout, samples, kind: marches[march].0, table, couplings };
                     let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
-                    simd::with(workers.isa, Part { task, members, records, failed, go_on })?;
+                    let part = Part { task, members, records, failed, go_on };
+                    if table.laid_out {
+                        simd::with(workers.isa, part)?
+                    } else {
+                        part.run::<f64>()?
+                    }
+                    shelf.give_back();
                 } else {
                     for (&member, record) in members.iter().zip(&mut records) {
                         let sample = member as usize;
                         match alone::cross(self, &layout, samples, sample, record, &mut || go_on()) {
                             Ok(()) => {}
-                            Err(Error::Interrupted) => return Err(Error::Interrupted),
+                            // That there is no memory says nothing of the sample.
+                            Err(cause @ (Error::Interrupted | Error::Memory { .. })) => return Err(cause),
                             Err(cause) => {
                                 record.forget();
                                 failed.push(Failure { sample, step: cause.step(), cause });
@@ -138,58 +158,24 @@ impl Study {
         threads::pool(working)?.install(work)?;
         results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
         results.failures.sort_by_key(|failure| failure.sample);
-        if marches.len() > 1 {
+        if distinct.len() > 1 || lost_rows > 0 {
             put_back(&order, &mut results);
         }
-        let paces = marches.iter().zip(&tables).map(|(&(_, halvings), table)| Pace::new(table, halvings)).collect();
-        let clock = Clock::new(self.settings.tail.seconds(), paces);
-        let statics = marches.iter().zip(&tables).filter(|_| !layout.own_statics);
-        let at_rest = statics.map(|((kind, _), table)| together::at_rest(self, *kind, table)).collect();
-        Ok(Run { results, clock, at_rest })
-    }
-
-    /// Refuses geometry that there is no memory for beside results of so many bytes.
-    fn check_tables(&self, marches: &[March], results: f64) -> Result<(), Error> {
-        let rows = &self.analysis.rows;
-        let bytes = |&(kind, halvings): &March| {
-            let contacts = &self.vehicle(kind).assembly().contacts;
-            let steps = self.plan(kind).0 as f64 * f64::from(1u32 << halvings);
-            let kinds = if contacts.iter().all(|contact| contact.law.is_plain()) { 1 } else { 3 };
-            let numbers = self.analysis.model.omega.len() * kinds + rows.width();
-            steps * (contacts.len() * (size_of::<f64>() * numbers + size_of::<Below>() + size_of::<Place>())) as f64
-        };
-        let all: f64 = marches.iter().filter(|_| self.shares).map(bytes).sum();
-        if results + all <= memory() {
-            return Ok(());
+        let (paces, mut at_rest): (_, Vec<_>) = shelves.into_iter().map(|shelf| shelf.leaves(self, &layout)).unzip();
+        if layout.own_statics {
+            at_rest.clear();
         }
-        let steps = marches.iter().map(|&(kind, halvings)| self.plan(kind).0 << halvings).max().unwrap_or(0);
-        let allowed = format!(
-            "the geometry of {steps} steps would take {:.1} GB of memory, more than there is: use fewer modes or longer \
-             steps",
-            all / 1e9
-        );
-        Err(Error::input("modes", self.analysis.model.omega.len(), allowed))
+        Ok(Run { results, marches, clock: Clock::new(self.settings.tail.seconds(), paces), at_rest })
     }
 }
 
 /// Refuses more samples than can be numbered, or than there is memory for: a mistyped number is told at once.
 fn check_room(count: usize, layout: &Layout) -> Result<(), Error> {
-    let bytes = count as f64 * layout.bytes();
-    if u32::try_from(count).is_ok() && bytes <= memory() {
-        return Ok(());
+    let mend = "use fewer";
+    if u32::try_from(count).is_err() {
+        return Err(Error::input("samples", count, format!("must be at most {}; {mend}", u32::MAX)));
     }
-    let allowed = format!("results would take {:.1} GB of memory, more than there is; use fewer", bytes / 1e9);
-    Err(Error::input("samples", count, allowed))
-}
-
-/// Memory of this machine [bytes]; where it does not say, what an address can reach. To ask the allocator would not help:
-/// many systems promise more than they have.
-fn memory() -> f64 {
-    let told = std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
-        let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-        line.trim().trim_end_matches(" kB").parse::<f64>().ok()
-    });
-    told.map_or(isize::MAX as f64, |kilobytes| 1024.0 * kilobytes)
+    memory::check("samples", count, count as f64 * layout.bytes(), f64::INFINITY, "results", mend)
 }
 
 /// What a run leaves.
@@ -197,9 +183,11 @@ fn memory() -> f64 {
 pub struct Run {
     /// The results.
     pub results: Results,
+    /// The marches that samples took.
+    pub marches: Vec<March>,
     /// What their instants mean.
     pub clock: Clock,
-    /// Static extremes in the steps of each march, largest of all responses looked at, then smallest; none if samples have
+    /// Static extremes in these steps, largest of all responses looked at, then smallest, by march; none if samples have
     /// their own.
     pub at_rest: Vec<Vec<f64>>,
 }
@@ -212,7 +200,8 @@ struct Portion<'a> {
     digests: &'a mut [u64],
 }
 
-/// The samples of each march in portions, with the rows that they fill, which follow each other in this order.
+/// The samples of each march in portions, with the rows that they fill, which follow each other in this order; the rows
+/// behind them are those of samples without a result.
 fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Results, chunk: usize) -> Vec<Portion<'a>> {
     let (width, instants) = (results.layout.width(), results.layout.instants());
     let mut numbers = &mut results.numbers[..];
@@ -230,6 +219,12 @@ fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Result
             let records = rows.map(|(numbers, instants)| Record { numbers, instants }).collect();
             portions.push(Portion { march, members, records, digests: own_digests });
         }
+    }
+    let rows = numbers.chunks_exact_mut(width).zip(moments.chunks_exact_mut(instants.max(1)));
+    for ((numbers, instants), digest) in rows.zip(digests) {
+        let mut record = Record { numbers, instants };
+        record.forget();
+        *digest = record.digest();
     }
     portions
 }

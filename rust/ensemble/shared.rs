@@ -8,7 +8,7 @@ use crate::road::spline::weighted;
 use crate::step::{Geometry, Stepper, Surface};
 
 /// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
-const COUPLED: usize = 1 << 21;
+pub const COUPLED: usize = 1 << 21;
 
 /// What the steps of samples that are alike need to know about the places of the axles on the bridge: by rows of a table,
 /// from the first with an axle on it.

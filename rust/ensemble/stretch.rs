@@ -130,6 +130,13 @@ impl<L: Lane> Stretch<L> {
         self.steps += count;
     }
 
+    /// Its steps, in order.
+    #[inline(always)]
+    pub fn taken(&self) -> impl Iterator<Item = &[L]> {
+        let width = self.widths.all();
+        self.rows[width..][..self.steps * width].chunks_exact(width)
+    }
+
     /// Its chunks, in order.
     #[inline(always)]
     pub fn chunks(&self) -> impl DoubleEndedIterator<Item = Kept<'_, L>> {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::look::Look;
-use crate::influence::{Quantity, Responses};
+use crate::influence::Responses;
 use crate::path::{ModeShapes, Pavement, Share};
 use crate::recovery::{Place, Rows};
 use crate::road::random::Synthesis;
@@ -25,7 +25,7 @@ pub fn middle(count: usize) -> usize {
 }
 
 /// Most influence numbers kept ready; beyond that they are worked out again for each group of lanes.
-const READY: usize = 1 << 23;
+pub const READY: usize = 1 << 23;
 
 /// Influence of the axle loads over a chunk of steps.
 #[derive(Debug, Clone, Default)]
@@ -65,18 +65,25 @@ pub struct Stop {
     pub fraction: f64,
     /// The axle that passes.
     pub axle: usize,
+    /// Where it stands.
+    side: Place,
     /// If the load of that axle and the modal accelerations jump, the step whose they are.
     pub jump: Option<usize>,
-    /// Rows to look at.
-    pub rows: Vec<usize>,
-    /// Influence of each axle on these, row by row.
-    pub influence: Vec<f64>,
-    /// What static loads of one at the axles make of the coordinates, axle by axle.
-    pub statics: Vec<f64>,
+    /// Which of [`Look::asked`] to look at.
+    pub asked: usize,
     /// The row of the shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
     pub tip: Option<(usize, f64)>,
     /// Position of the front axle [m].
     pub position: f64,
+}
+
+/// What the axles do to the bridge at a stop.
+#[derive(Debug, Clone, Default)]
+pub struct Moment {
+    /// Influence of each axle on the rows asked for, row by row.
+    pub influence: Vec<f64>,
+    /// What static loads of one at the axles make of the coordinates, axle by axle.
+    pub statics: Vec<f64>,
 }
 
 impl Stop {
@@ -113,6 +120,12 @@ impl Advance {
     pub fn x(&self, step: usize, axle: usize) -> f64 {
         self.advance * step as f64 + self.start - self.behind[axle]
     }
+
+    /// Position of an axle a fraction of the way through a step [m].
+    pub fn between(&self, step: usize, fraction: f64, axle: usize) -> f64 {
+        let (before, after) = (self.x(step - 1, axle), self.x(step, axle));
+        before + fraction * (after - before)
+    }
 }
 
 /// The shared geometry.
@@ -130,15 +143,19 @@ pub struct Table {
     pub shapes: Vec<f64>,
     /// Derivatives held, the value included.
     pub kinds: usize,
-    /// What static loads of one at the axles make of the coordinates, by step, axle and coordinate.
-    pub statics: Vec<f64>,
     /// First step with an axle on the bridge, which is at rest till then.
     pub first: usize,
-    /// Influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
-    /// [`Table::chunks`].
-    ready: Option<Vec<Chunk>>,
     /// Moments between steps, in order.
     pub stops: Vec<Stop>,
+    /// Whether what the axles do to the bridge is laid out for many samples.
+    pub laid_out: bool,
+    /// If so, what static loads of one at the axles make of the coordinates, by step, axle and coordinate.
+    statics: Vec<f64>,
+    /// And the same with the influence on the rows, at every stop.
+    moments: Vec<Moment>,
+    /// And the influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
+    /// [`Table::chunks`].
+    ready: Option<Vec<Chunk>>,
 }
 
 /// The roads of a study: a part that is the same for all samples, and a random one of each sample's own.
@@ -165,13 +182,14 @@ impl Ground<'_> {
 
 impl Table {
     /// For axles on their `path` over a bridge of which `look` is looked at; with `slopes` of the modes if the step asks
-    /// for them.
+    /// for them, and with what axles do to the bridge `laid_out` if many samples share it.
     pub fn new(
         path: Advance,
         shapes: &ModeShapes,
         (rows, responses, look): (&Rows, &Responses, &Look),
         slopes: bool,
         ground: Ground<'_>,
+        laid_out: bool,
     ) -> Self {
         let (kinds, axles, steps) = (if slopes { 3 } else { 1 }, path.behind.len(), path.steps);
         let mut table = Table {
@@ -180,10 +198,12 @@ impl Table {
             below: Vec::with_capacity((steps + path.beyond + 1) * axles),
             shapes: Vec::with_capacity((steps + path.beyond + 1) * axles * shapes.modes() * kinds),
             kinds,
-            statics: Vec::new(),
             first: steps,
-            ready: None,
             stops: Vec::new(),
+            laid_out,
+            statics: Vec::new(),
+            moments: Vec::new(),
+            ready: None,
             path,
         };
         for step in 0..=steps + table.path.beyond {
@@ -193,7 +213,7 @@ impl Table {
                 table.below.push(ground.below(x));
                 shapes.extend_at(x, kinds, &mut table.shapes);
                 table.places.push(place);
-                if step <= steps {
+                if laid_out && step <= steps {
                     rows.extend_static(place, &mut table.statics);
                 }
                 if place.is_some() {
@@ -201,6 +221,11 @@ impl Table {
                 }
             }
         }
+        table.stops = stops(&table.path, rows, responses, look);
+        if !laid_out {
+            return table;
+        }
+        table.moments = table.stops.iter().map(|stop| table.fill_moment(stop, rows, look, Moment::default())).collect();
         let all = look.rows.len() * axles * (steps + 1 - table.first);
         if all <= READY {
             let chunks = (table.first..=steps).step_by(CHUNK);
@@ -211,7 +236,6 @@ impl Table {
             });
             table.ready = Some(filled.collect());
         }
-        table.find_stops(rows, responses, look);
         table
     }
 
@@ -273,75 +297,84 @@ impl Table {
         }
     }
 
-    /// Every passing of a section or an end, as [`crate::survey`] looks for them.
-    fn find_stops(&mut self, rows: &Rows, responses: &Responses, look: &Look) {
-        let (nodes, last) = (rows.mesh().nodes(), rows.mesh().panels());
-        let inner = responses.sections().iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
-        let mut places: Vec<(usize, f64, Option<usize>)> =
-            inner.map(|(section, &node)| (node, nodes[node], Some(section))).collect();
-        places.extend([(0, nodes[0], None), (last, nodes[last], None)]);
-        places.sort_unstable_by_key(|place| place.0);
-        let shear = |quantity: Quantity, node: usize, sign: f64| {
-            let section = responses.sections().iter().position(|&s| s == node)?;
-            Some((look.row(responses.range(quantity).start + section)?, sign))
+    /// Where axles stand on the bridge at some of its steps, by step and axle.
+    pub fn places(&self, steps: Range<usize>) -> &[Place] {
+        let axles = self.axles();
+        &self.places[steps.start * axles..steps.end * axles]
+    }
+
+    /// What static loads of one at the axles make of the coordinates at a step, by axle and coordinate.
+    pub fn statics<'a>(&'a self, step: usize, rows: &Rows, scratch: &'a mut Vec<f64>) -> &'a [f64] {
+        let width = self.axles() * rows.width();
+        if self.laid_out {
+            return &self.statics[step * width..(step + 1) * width];
+        }
+        scratch.clear();
+        self.places(step..step + 1).iter().for_each(|place| rows.extend_static(*place, scratch));
+        scratch
+    }
+
+    /// What the axles do to the bridge at a stop.
+    pub fn moment<'a>(&'a self, stop: usize, rows: &Rows, look: &Look, scratch: &'a mut Moment) -> &'a Moment {
+        if self.laid_out {
+            return &self.moments[stop];
+        }
+        *scratch = self.fill_moment(&self.stops[stop], rows, look, std::mem::take(scratch));
+        scratch
+    }
+
+    fn fill_moment(&self, stop: &Stop, rows: &Rows, look: &Look, mut moment: Moment) -> Moment {
+        let Moment { influence, statics } = &mut moment;
+        influence.clear();
+        statics.clear();
+        let standing = |axle: usize| match axle == stop.axle {
+            true => stop.side,
+            false => rows.place(self.path.between(stop.step, stop.fraction, axle)),
         };
-        let tips = [shear(Quantity::ShearRight, 0, -1.0), shear(Quantity::ShearLeft, last, 1.0)];
-        let sections = responses.sections().len();
-        // Deflection, moment and shears of each section, and all rows for the ends.
-        let own = |section: usize| {
-            let mut rows: Vec<usize> = (0..4).filter_map(|quantity| look.row(quantity * sections + section)).collect();
-            rows.dedup();
-            rows
-        };
-        let of_sections: Vec<Vec<usize>> = (0..sections).map(own).collect();
-        let every: Vec<usize> = (0..look.rows.len()).collect();
-        let path = &self.path;
-        let axles = path.behind.len();
-        let mut stops = Vec::new();
-        let mut ahead: Vec<usize> =
-            (0..axles).map(|axle| places.partition_point(|place| place.1 <= path.x(0, axle))).collect();
-        // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
-        let last_step = path.steps + usize::from(path.beyond > 0);
-        for step in 1..=last_step {
-            for axle in 0..axles {
-                while let Some(&(node, at, section)) =
-                    places.get(ahead[axle]).filter(|place| place.1 <= path.x(step, axle))
-                {
-                    ahead[axle] += 1;
-                    let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
-                    let fraction = (at - from) / (to - from);
-                    let between = |k: usize| {
-                        let (b, a) = (path.x(step - 1, k), path.x(step, k));
-                        b + fraction * (a - b)
-                    };
-                    let mut standing: Vec<Place> = (0..axles).map(|k| rows.place(between(k))).collect();
-                    let left = node.checked_sub(1).map(|panel| (panel, 1.0));
-                    let right = (node < last).then_some((node, 0.0));
-                    let held = node != 0 && node != last || responses.supported(node);
-                    let asked = section.map_or(&every, |section| &of_sections[section]);
-                    for (side, row) in [(left, step - 1), (right, step)] {
-                        standing[axle] = side;
-                        let influence = asked.iter().flat_map(|&r| {
-                            let response = look.rows[r].response;
-                            standing.iter().map(move |place| place.map_or(0.0, |p| rows.influence_of(response, p)))
-                        });
-                        let mut statics = Vec::with_capacity(axles * rows.width());
-                        standing.iter().for_each(|place| rows.extend_static(*place, &mut statics));
-                        stops.push(Stop {
-                            statics,
-                            step,
-                            fraction,
-                            axle,
-                            jump: (!held).then_some(row),
-                            influence: influence.collect(),
-                            rows: asked.clone(),
-                            tip: (section.is_none() && side.is_some()).then(|| tips[usize::from(node != 0)]).flatten(),
-                            position: between(0),
-                        });
-                    }
+        let standing: Vec<Place> = (0..self.axles()).map(standing).collect();
+        for &row in &look.asked[stop.asked] {
+            let response = look.rows[row].response;
+            influence.extend(standing.iter().map(|place| place.map_or(0.0, |p| rows.influence_of(response, p))));
+        }
+        standing.iter().for_each(|place| rows.extend_static(*place, statics));
+        moment
+    }
+}
+
+/// Every passing of a section or an end, as [`crate::survey`] looks for them.
+pub fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec<Stop> {
+    let last = rows.mesh().panels();
+    let places = &look.places;
+    let axles = path.behind.len();
+    let mut stops = Vec::with_capacity(2 * axles * places.len());
+    let mut ahead: Vec<usize> =
+        (0..axles).map(|axle| places.partition_point(|place| place.1 <= path.x(0, axle))).collect();
+    // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
+    let last_step = path.steps + usize::from(path.beyond > 0);
+    for step in 1..=last_step {
+        for (axle, ahead) in ahead.iter_mut().enumerate() {
+            while let Some(&(node, at, asked)) = places.get(*ahead).filter(|place| place.1 <= path.x(step, axle)) {
+                *ahead += 1;
+                let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
+                let fraction = (at - from) / (to - from);
+                let left = node.checked_sub(1).map(|panel| (panel, 1.0));
+                let right = (node < last).then_some((node, 0.0));
+                let end = node == 0 || node == last;
+                let held = !end || responses.supported(node);
+                for (side, row) in [(left, step - 1), (right, step)] {
+                    stops.push(Stop {
+                        step,
+                        fraction,
+                        axle,
+                        side,
+                        jump: (!held).then_some(row),
+                        asked,
+                        tip: (end && side.is_some()).then(|| look.tips[usize::from(node != 0)]).flatten(),
+                        position: path.between(step, fraction, 0),
+                    });
                 }
             }
         }
-        self.stops = stops;
     }
+    stops
 }

@@ -85,7 +85,7 @@ pub struct Task<'a> {
 /// Some of these samples, with room for what comes of them.
 pub struct Part<'s, 'a> {
     /// What they share.
-    pub task: Task<'a>,
+    pub task: Task<'s>,
     /// Their numbers.
     pub members: &'s [u32],
     /// Where each is written down.
@@ -149,8 +149,9 @@ impl Task<'_> {
     /// Most steps of a tail that is not given.
     fn most(&self, sample: usize, ready: &Ready) -> usize {
         let (axles, modes) = (self.table.axles(), self.table.modes);
-        let coordinates = self.study.vehicle(self.kind).assembly().mass.nrows() + 1;
-        let room = room(self.table.path.steps as f64, bytes(modes, axles, coordinates));
+        let assembly = self.study.vehicle(self.kind).assembly();
+        let bytes = bytes(modes, axles, assembly.mass.nrows() + 1, assembly.frictions.len());
+        let room = room(self.table.path.steps as f64, bytes);
         most_steps(ready.slowest, self.step(sample), room)
     }
 
@@ -317,7 +318,7 @@ impl Task<'_> {
             Bridge { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
         });
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
-        let couplings = samples.alike().then(|| {
+        let couplings = (samples.alike() && table.laid_out).then(|| {
             let work = || Couplings::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
             self.couplings.get_or_init(work)
         });

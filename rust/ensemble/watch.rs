@@ -1,8 +1,8 @@
 //! What is seen of samples side by side as they pass: extremes and when, sums of squares, wheels off the road.
 
-use super::look::Row;
+use super::look::Look;
 use super::stretch::{Stretch, Widths};
-use super::table::Stop;
+use super::table::{Moment, Stop};
 use crate::lane::Lane;
 
 /// Largest and smallest so far, and when: the number of a step, or of a stop.
@@ -172,9 +172,8 @@ pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
 #[allow(clippy::too_many_arguments)] // each is one thing
 pub fn watch_stop<L: Lane>(
     watched: &mut [Watched<L>],
-    rows: &[Row],
-    stop: &Stop,
-    number: usize,
+    look: &Look,
+    (stop, number, moment): (&Stop, usize, &Moment),
     [before, after]: [&[L]; 2],
     widths: &Widths,
     jumps: usize,
@@ -191,16 +190,21 @@ pub fn watch_stop<L: Lane>(
         between[jumps..c].copy_from_slice(&side[jumps..c]);
         between[c + stop.axle] = side[c + stop.axle];
     }
-    watch_moment(watched, rows, stop, number, between);
+    watch_moment(watched, look, (stop, number, moment), between);
 }
 
 /// Takes in a moment at which an axle passes, given coordinates and loads then.
 #[inline(always)]
-pub fn watch_moment<L: Lane>(watched: &mut [Watched<L>], rows: &[Row], stop: &Stop, number: usize, then: &[L]) {
+pub fn watch_moment<L: Lane>(
+    watched: &mut [Watched<L>],
+    look: &Look,
+    (stop, number, moment): (&Stop, usize, &Moment),
+    then: &[L],
+) {
     let at = L::splat(number as f64);
-    let c = rows.first().map_or(0, |row| row.factors.len());
-    for (&r, influence) in stop.rows.iter().zip(stop.influence.chunks_exact(then.len() - c)) {
-        let value = value(&rows[r].factors, influence, then);
+    let c = look.rows.first().map_or(0, |row| row.factors.len());
+    for (&r, influence) in look.asked[stop.asked].iter().zip(moment.influence.chunks_exact(then.len() - c)) {
+        let value = value(&look.rows[r].factors, influence, then);
         watched[r].take(value, at);
         if let Some((tip, sign)) = stop.tip
             && tip == r

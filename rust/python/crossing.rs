@@ -18,6 +18,7 @@ use crate::damping::Damping;
 use crate::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::error::Error;
 use crate::influence::Quantity;
+use crate::memory;
 use crate::recovery::Recovery;
 use crate::settings::{Settings, Tail};
 use crate::vehicle::Vehicle;
@@ -123,7 +124,10 @@ impl Crossing {
             "friction" => (&history.friction, history.axles),
             _ => return Err(Error::input("states", format!("\"{name}\""), "no such state").into()),
         };
-        rows(py, values.clone(), width)
+        let mut copy = Vec::new();
+        memory::reserve(&mut copy, "states", name, values.len())?;
+        copy.extend_from_slice(values);
+        rows(py, copy, width)
     }
 
     #[getter]
@@ -228,7 +232,8 @@ impl Crossing {
         lines.extend(assembly.hops.iter().map(Option::as_ref));
         let width = 3 * (lines.len() + 1);
         let values = interruptible(py, |go_on| {
-            let mut values = Vec::with_capacity(history.len() * width);
+            let mut values = Vec::new();
+            memory::reserve(&mut values, "states", "motion", history.len() * width)?;
             for row in history.motion.chunks_exact(history.motion_width()) {
                 let own = &row[columns.motion.clone()];
                 for line in &lines {

@@ -22,6 +22,7 @@ use crate::ensemble::sample::{Factors, Parameter, Samples};
 use crate::ensemble::{Run, Study, Workers, alone};
 use crate::error::Error;
 use crate::influence::Quantity;
+use crate::memory;
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
@@ -204,6 +205,8 @@ impl Clock {
         if marches.len() != count || ![1, count].contains(&speeds.len()) {
             return Err(Error::input("instants", count, "must be those of all samples").into());
         }
+        let bytes = 2.0 * (size_of::<f64>() * instants.len()) as f64;
+        memory::check("samples", count, bytes, f64::INFINITY, "times and positions", "use fewer")?;
         let [times, positions] = interruptible(py, |go_on| {
             let mut times = Array2::zeros(instants.dim());
             let mut positions = Array2::zeros(instants.dim());
@@ -282,6 +285,8 @@ pub fn static_loads<'py>(
         all
     };
     let nominal: Vec<Vec<f64>> = as_given.iter().map(|event| loads(event)).collect();
+    let bytes = (size_of::<f64>() * count) as f64 * axles as f64;
+    memory::check("samples", count, bytes, f64::INFINITY, "static axle loads", "use fewer")?;
     let all = interruptible(py, |go_on| {
         let mut all = Vec::with_capacity(count * axles);
         for sample in 0..count {

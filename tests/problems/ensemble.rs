@@ -243,7 +243,8 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
     assert!(results.failures.is_empty(), "{name}: {:?}", results.failures);
     for sample in 0..samples.count {
         let march = results.marches[sample] as usize;
-        let alone = match alone(study, samples, sample, run.clock.paces[march].advance) {
+        let (number, speed) = (results.marches[sample], samples.speed(sample, 0));
+        let alone = match alone(study, samples, sample, study.path(run.marches[march]).advance) {
             Ok(alone) => alone,
             Err(error) => panic!("{name}, sample {sample}: {error}"),
         };
@@ -255,7 +256,6 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 "{name}, sample {sample}, {what} {at}: {value}, {expected}"
             );
         };
-        let when = |instant: u32| run.clock.when(march as u32, samples.speed(sample, 0), instant);
         let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
         let values = column(results, sample, Column::Responses);
         let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
@@ -270,7 +270,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 [(dynamic.max[r], at_rest.max[r]), (dynamic.min[r], at_rest.min[r])].into_iter().enumerate()
             {
                 let at = side * layout.responses + place;
-                let (time, position) = when(instants[at]);
+                let (time, position) = run.clock.when(number, speed, instants[at]);
                 // Cut short, the last step is rounded before or after the factors of the bridge.
                 let cut = alone.stiffness != 1.0 && study.settings.tail.seconds() > Some(0.0);
                 if cut && alone.history.time.last() == Some(&time) {
@@ -312,7 +312,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
             for (side, extreme) in sides.into_iter().enumerate() {
                 let at = side * layout.axles + k;
                 same("load of axle", k, loads[at], extreme.value);
-                let (time, position) = when(instants[2 * layout.responses + at]);
+                let (time, position) = run.clock.when(number, speed, instants[2 * layout.responses + at]);
                 same("time of load", k, time, extreme.time);
                 same("place of load", k, position, extreme.position);
             }
@@ -320,10 +320,10 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
     }
 }
 
-/// One sample in a lane of any kind, on the calling thread: its numbers and instants.
-pub fn one<L: Lanes>(study: &Study, number: u64) -> (Vec<f64>, Vec<u32>) {
+/// One sample in a lane of any kind, its geometry laid out or not, on the calling thread: its numbers and instants.
+pub fn one<L: Lanes>(study: &Study, number: u64, laid_out: bool) -> (Vec<f64>, Vec<u32>) {
     let samples = Samples::at_speed(number, 1, SPEED);
-    let (layout, table) = (study.layout(&samples), study.table((0, 0)));
+    let (layout, table) = (study.layout(&samples), study.table((0, 0), laid_out));
     let (mut numbers, mut instants) = (vec![0.0; layout.width()], vec![0; layout.instants()]);
     let record = Record { numbers: &mut numbers, instants: &mut instants };
     let (samples, table, couplings) = (&samples, &table, &OnceLock::new());

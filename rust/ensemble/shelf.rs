@@ -1,0 +1,73 @@
+//! The geometry of the marches of a run: made when the first samples of a march come, gone when the last have.
+//!
+//! Workers take portions of samples in order, march after march, so that no more tables stand here at a time than there
+//! are workers, however many kinds of event there are.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use super::clock::Pace;
+use super::record::Layout;
+use super::shared::Couplings;
+use super::table::Table;
+use super::{March, Study, together};
+
+/// To march so many samples one after the other is less work than to lay out the geometry for all.
+pub const FEW: usize = 2;
+
+/// What the samples of a march share.
+#[derive(Debug)]
+pub struct Shared {
+    /// The geometry.
+    pub table: Table,
+    /// What their steps have in common if they are alike, for whichever worker comes first to work out.
+    pub couplings: OnceLock<Couplings>,
+}
+
+/// The place of a march.
+#[derive(Debug)]
+pub struct Shelf {
+    march: March,
+    laid_out: bool,
+    shared: Mutex<Option<Arc<Shared>>>,
+    /// Portions of its samples that are not done.
+    left: AtomicUsize,
+    /// What stays of it: its pace and, if samples share them, its static extremes.
+    stays: OnceLock<(Pace, Vec<f64>)>,
+}
+
+impl Shelf {
+    /// Of a march that this many portions of samples take, its geometry laid out or not.
+    pub fn new(march: March, laid_out: bool, portions: usize) -> Self {
+        let left = AtomicUsize::new(portions);
+        Shelf { march, laid_out, shared: Mutex::new(None), left, stays: OnceLock::new() }
+    }
+
+    /// What its samples share, made now if nobody has.
+    pub fn take(&self, study: &Study, layout: &Layout) -> Arc<Shared> {
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(shared) = &*shared {
+            return Arc::clone(shared);
+        }
+        let table = study.table(self.march, self.laid_out);
+        let (kind, halvings) = self.march;
+        self.stays.get_or_init(|| {
+            let at_rest = if layout.own_statics { Vec::new() } else { together::at_rest(study, kind, &table) };
+            (Pace::new(&table.path, &table.stops, halvings), at_rest)
+        });
+        Arc::clone(shared.insert(Arc::new(Shared { table, couplings: OnceLock::new() })))
+    }
+
+    /// One portion is done.
+    pub fn give_back(&self) {
+        if self.left.fetch_sub(1, Ordering::Relaxed) == 1 {
+            *self.shared.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        }
+    }
+
+    /// The pace, and the static extremes, largest of all responses and then smallest; nothing where no sample came.
+    pub fn leaves(self, study: &Study, layout: &Layout) -> (Pace, Vec<f64>) {
+        let nothing = || (Pace::new(&study.path(self.march), &[], self.march.1), vec![f64::NAN; 2 * layout.responses]);
+        self.stays.into_inner().unwrap_or_else(nothing)
+    }
+}

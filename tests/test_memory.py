@@ -1,0 +1,85 @@
+"""What does not fit is refused by name, whatever takes the memory; nothing ends the process."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+#: Allowed to a process, its libraries included [bytes].
+LIMIT = 2_000_000_000
+
+FRAME = """
+    import resource, sys
+    import numpy as np
+    import spanwise as sw
+    bridge = sw.Bridge(spans=[18.0, 18.0], EI=2e9, mass=6e3, stations_per_span=3)
+    truck = sw.vehicles.kishan_1973()
+    given = dict(speed=20.0, damping=0.02, tail=0.0, modes=3)
+    loads, behind = np.full(200, 1e4), -2.0 * np.arange(200)
+    def many(sections):
+        return np.linspace(0.0, 36.0, sections)
+    resource.setrlimit(getattr(resource, sys.argv[1]), (int(sys.argv[2]), int(sys.argv[2])))
+    try:
+        {what}
+    except (ValueError, MemoryError) as error:
+        print(type(error).__name__, error)
+    else:
+        print("came through")
+"""
+
+#: What is asked, and the beginnings of refusals; without one it must come through.
+ASKED = [
+    ("sw.ensemble(bridge, truck, samples=10**6, advance=0.1, **given)", "ValueError samples = "),
+    (
+        "sw.ensemble(bridge, sw.ForceTrain(loads=loads, positions=behind), samples=2, "
+        "sections=many(2000), advance=0.1, **given)",
+        "ValueError sections = ",
+    ),
+    (
+        "sw.cross(bridge, sw.ForceTrain(loads=loads, positions=behind), sections=many(2000), "
+        "step=0.01, **given)",
+        "ValueError sections = ",
+    ),
+    ("sw.cross(bridge, truck, **dict(given, modes=6, step=1.2e-6))", "ValueError modes = "),
+    ("r = sw.cross(bridge, truck, step=4e-6, **given); r.moment; r.deflection; r.shear_left", None),
+    (
+        "sw.ensemble(bridge, [truck] * 3000, samples=3000, kind=range(3000), advance=0.05, "
+        "**given)",
+        "",
+    ),
+    ("sw.ensemble(bridge, truck, samples=4, threads=4096, advance=0.1, **given)", ""),
+    (
+        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.1, quantities=['moment'], "
+        "**given); e.to_npz(sys.argv[3])",
+        None,
+    ),
+]
+
+
+def asked(what: str, limit: str, size: int, path: str) -> str:
+    program = textwrap.dedent(FRAME).format(what=what)
+    command = [sys.executable, "-W", "ignore", "-c", program, limit, str(size), path]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, (done.returncode, done.stderr[-2000:])
+    return done.stdout
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits are Linux's")
+@pytest.mark.parametrize(("what", "refusal"), ASKED)
+def test_within_a_limit_nothing_aborts(what: str, refusal: str | None, tmp_path: object) -> None:
+    told = asked(what, "RLIMIT_AS", LIMIT, f"{tmp_path}/all.npz")
+    if refusal is None:
+        # Some systems have more room left than others.
+        assert told.startswith(("came through", "ValueError", "MemoryError")), told
+    else:
+        assert told.startswith(refusal or "came through"), told
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits are Linux's")
+def test_the_limit_of_data_counts_too(tmp_path: object) -> None:
+    what, refusal = ASKED[0]
+    assert refusal
+    assert asked(what, "RLIMIT_DATA", LIMIT, str(tmp_path)).startswith(refusal)
