@@ -10,6 +10,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import spanwise as sw
@@ -214,6 +215,37 @@ def test_road_by_segments_and_as_json(
     told = json.loads(capsys.readouterr().out)
     assert told["iso_8608"] is None
     assert "two octaves" in told["iso_8608_refused"]
+
+
+def test_road_of_coarse_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    road = sw.ISO8608("B", seed=4, contact_patch=0.0)
+
+    def asked(spacing: float, end: float, *options: str) -> tuple[int, str, str]:
+        file = tmp_path / "profile.csv"
+        lines = [f"{x},{float(road.elevation(x))}\n" for x in np.arange(0.0, end, spacing)]
+        file.write_text("".join(lines), encoding="ascii")
+        return main(["road", str(file), *options]), *capsys.readouterr()
+
+    # Once, however often it is looked at.
+    code, out, err = asked(0.5, 600.0, "--end", "544", "--every", "100")
+    assert (code, err.count("\n")) == (0, 1)
+    assert err.startswith("spanwise: warning: road: its points are 0.5 m apart")
+    assert "IRI       4.07 m/km\n" in out
+    # What they cannot hold is not told, and the class still is.
+    code, out, err = asked(2.5, 2000.0)
+    assert (code, err) == (0, "")
+    assert "IRI       road: its points are 2.5 m apart" in out
+    assert "ISO 8608  class B" in out
+    code, out, err = asked(2.5, 2000.0, "--json", "-")
+    told = json.loads(out)
+    assert told["iri"] is None
+    assert told["iri_refused"].startswith("road: its points are 2.5 m apart")
+    assert told["iso_8608"]["class"] == "B"
+    # Nothing is left to tell of so few, or of segments.
+    for end, *options in ((100.0,), (2000.0, "--every", "100")):
+        code, out, err = asked(2.5, end, *options)
+        assert (code, out, err.count("\n")) == (2, "", 1)
+        assert err.startswith("spanwise: error: road: its points are 2.5 m apart")
 
 
 def test_figures_of_traffic(tmp_path: Path) -> None:

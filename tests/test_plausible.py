@@ -110,6 +110,28 @@ def dropped(code: float, at: slice) -> tuple[np.ndarray, np.ndarray]:
     return x, z
 
 
+def designed(places: list[float], heights: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """A design of straight grades between some places, and level outside, by points 10 m apart."""
+    x = 10.0 * np.arange(41)
+    return x, np.interp(x, places, heights)
+
+
+@pytest.mark.parametrize(
+    "design",
+    [
+        designed([200.0, 400.0], [0.0, -12.0]),
+        designed([100.0, 200.0], [0.0, 12.0]),
+        designed([100.0, 200.0, 300.0], [0.0, 5.0, 0.0]),
+        designed([200.0, 210.0], [0.0, 0.6]),
+        designed([0.0, 10.0], [0.6, 0.0]),
+        designed([390.0, 400.0], [0.0, 0.6]),
+    ],
+    ids=["down", "up", "a crest", "one interval", "the first interval", "the last interval"],
+)
+def test_breaks_of_grade_are_not_doubted(design: tuple[np.ndarray, np.ndarray]) -> None:
+    sw.Profile(*design)
+
+
 @pytest.mark.parametrize(
     ("made", "says"),
     [
@@ -121,6 +143,8 @@ def dropped(code: float, at: slice) -> tuple[np.ndarray, np.ndarray]:
         (dropped(999.9, slice(0, 1)), r"elevations\[0\] = 999.9: .*drop-out"),
         (dropped(999.9, slice(399, 400)), r"elevations\[399\] = 999.9: .*drop-out"),
         (dropped(0.3, slice(50, 51)), r"elevations\[50\] = 0.3: .*drop-out"),
+        (dropped(0.5, slice(50, 52)), r"elevations\[5[01]\] = 0.5: .*drop-out"),
+        (designed([190.0, 200.0, 210.0], [0.0, 0.5, 0.0]), r"elevations\[20\] = 0.5: .*drop-out"),
     ],
     ids=str,
 )

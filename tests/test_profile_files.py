@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -47,10 +48,18 @@ def rows(
     return text.replace(".", ",") if comma else text
 
 
-def test_the_name_it_had() -> None:
-    assert sw.Profile.read_csv == sw.Profile.read
+def test_the_name_it_had(tmp_path: Path) -> None:
+    file = tmp_path / "road.csv"
+    file.write_text(rows(X, LEFT))
+    with pytest.warns(DeprecationWarning, match=r"Profile\.read_csv is now Profile\.read") as told:
+        road = sw.Profile.read_csv(file, scale=(1.0, 2.0))
+    assert told[0].filename == __file__
+    assert road == sw.Profile.read(file, scale=(1.0, 2.0))
 
 
+FEET = [x / 0.3048 for x in X]
+INCHES = [z / 0.0254 for z in LEFT]
+IN_FEET = rows(FEET, INCHES)
 THOUSAND = [1000.0 + x for x in X]
 
 TABLES: dict[str, Table] = {
@@ -85,11 +94,77 @@ TABLES: dict[str, Table] = {
     "UTF-16 without a mark": (rows(X, LEFT), "utf-16-le", {}, X, LEFT),
     "the other UTF-16": ("x;z\n" + rows(X, LEFT, between=";"), "utf-16-be", {}, X, LEFT),
     "names and units over blanks": (
-        " x [ft]  z [in]\n"
-        + rows([x / 0.3048 for x in X], [z / 0.0254 for z in LEFT], between=" "),
+        " x [ft]  z [in]\n" + IN_FEET.replace(",", " "),
         "utf-8",
         {},
         X,
+        LEFT,
+    ),
+    "units in round brackets": (
+        "station (ft),elevation (in)\n" + IN_FEET,
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "units after a stroke": (
+        "x / ft;z / in\n" + IN_FEET.replace(",", ";"),
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "units after a stroke over blanks": (
+        "x / ft   z /in\n" + IN_FEET.replace(",", " "),
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "units after a stroke alone": ("x/ft;z/in\n" + IN_FEET.replace(",", ";"), "utf-8", {}, X, LEFT),
+    "units in words": (
+        "Station in m;Höhe in mm\n" + rows(X, [1e3 * z for z in LEFT], between=";", comma=True),
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "a line of units in brackets over blanks": (
+        "x z\n[ft] [in]\n" + IN_FEET.replace(",", " "),
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "units after a dash": ("station_ft,elevation_in\n" + IN_FEET, "utf-8", {}, X, LEFT),
+    "the last brackets": (
+        "x (from the joint) [ft],z [in] (left)\n" + IN_FEET,
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "yards": ("Station [yd],z [m]\n" + rows(X, LEFT), "utf-8", {}, [0.9144 * x for x in X], LEFT),
+    "a unit that nothing is read of": (
+        "x;t;z\nft;kN;in\n" + rows(FEET, X, INCHES, between=";"),
+        "utf-8",
+        {"columns": ("x", "z")},
+        X,
+        LEFT,
+    ),
+    "brackets without units": (
+        "x (from the joint),z (left)\n" + rows(X, LEFT),
+        "utf-8",
+        {},
+        X,
+        LEFT,
+    ),
+    "names that hold a stroke": ("km/h,L/R\n" + rows(X, LEFT), "utf-8", {}, X, LEFT),
+    "a factor before units that are not known": (
+        "x [rod],z [in]\n" + rows(X, LEFT),
+        "utf-8",
+        {"scale": (2.0, 1.0)},
+        [2 * x for x in X],
         LEFT,
     ),
     "a factor before units": (
@@ -256,8 +331,39 @@ def test_files_as_people_have_them(tmp_path: Path, case: Table) -> None:
         ("0,1\n1,2\n2,x\n3,1\n", {}, ("road.txt, line 3", "'x' in column 1", "not a number")),
         ("x;z\n0;1\n1;1\n-- end;\n2;1\n", {}, ("line 4", "'-- end'", "not a number")),
         ("0,1\n1\n2,2\n", {}, ("line 2", "1 columns", "column 1")),
-        ("0,1\n1,1\n1,1\n2,1\n", {}, ("line 3", "x[2] = 1 m", "duplicates = mean, first or last")),
+        ("0,1\n1,1\n1,1\n2,1\n", {}, ("line 3", "x[2] = 1 m", "duplicates = 'mean' takes")),
         ("0,1\n\n2,1\n1,1\n3,1\n", {}, ("line 4", "x[2] = 1 m", "sort brings the points")),
+        ("x,z\n0,1\n1_000,1\n", {}, ("line 3", "'1_000' in column 0", "not a number")),
+        ("0,1\n1,1_0\n", {"decimal": "."}, ("line 2", "'1_0' in column 1", "not a number")),
+        ("0;1\n1;1_0,5\n", {"decimal": ","}, ("line 2", "'1_0,5' in column 1", "not a number")),
+        (
+            "Station [rod],z [in]\n0,1\n1,2\n",
+            {},
+            ("road.txt: unit 'rod': is not known; give scale",),
+        ),
+        ("x (m);z (Zoll)\n0;1\n1;2\n", {}, ("unit 'zoll': is not known; give scale",)),
+        ("x / m;z / Zoll\n0;1\n1;2\n", {}, ("unit 'zoll': is not known; give scale",)),
+        ("x [rod],z [link]\n0,1\n1,2\n", {}, ("unit 'rod': is not known; give scale",)),
+        ("x,z\nrod,in\n0,1\n1,2\n", {}, ("unit 'rod': is not known; give scale",)),
+        (
+            "x,left,right\n" + rows(X, LEFT, RIGHT),
+            {},
+            ("line 2: 3 columns: x, left, right", "give that of x and one elevation in columns"),
+        ),
+        (
+            "Station\tTime\tz\n" + rows(X, LEFT, RIGHT, between="\t"),
+            {},
+            ("line 2: 3 columns: Station, Time, z", "several for their mean"),
+        ),
+        (
+            ERD.replace("   2,   5", "   3,   5")
+            .replace("0.5000", "0.0")
+            .replace("LElev", "X       LElev")
+            .replace("mm  ", "m       mm  ", 1)
+            + rows(X, LEFT, RIGHT),
+            {},
+            ("line 9: 3 columns: X, LElev, RElev", "in columns"),
+        ),
         ("x,z\n0,1\n1,1\n2,1\n9,1\n", {}, ("line 5", "x[3] = 9 m", "max_gap = 5 m")),
         ("0;1\n1,5;2\n", {"decimal": "."}, ("line 2", "'1,5'", "is the decimal mark ','?")),
         ("0;1\n1;2\n", {"delimiter": ","}, ("line 2", "no numbers in '1;2'", "delimiter ';'?")),
@@ -389,13 +495,84 @@ def test_the_same_options_on_the_command_line(
     assert "480 points from -20 to 99.75 m" in out
     assert "class B" in out
     assert main(["road", str(file), *given]) == 2
-    assert "give one in columns" in capsys.readouterr().err
-    # Advice names options that are there.
-    file.write_text("0,0.1\n2,0.1\n1,0.1\n1,0.1\n2.5,0.1\n9,0.1\n14,0.1\n")
-    for options, advice in (
-        ([], "--sort brings the points"),
-        (["--sort"], "--duplicates = mean, first or last"),
-        (["--sort", "--duplicates", "mean"], "--max-gap = "),
-    ):
-        assert main(["road", str(file), *options]) == 2
-        assert advice in capsys.readouterr().err
+    assert "give one in --columns" in capsys.readouterr().err
+
+
+#: Files, options of the command, what it says, and what Python says.
+ADVICE = {
+    "sort": ("0,0.1\n2,0.1\n1,0.1\n3,0.1\n", [], "--sort brings the", "sort brings the"),
+    "duplicates": (
+        "0,0.1\n1,0.1\n1,0.1\n2.5,0.1\n",
+        [],
+        "--duplicates mean takes",
+        "duplicates = 'mean' takes",
+    ),
+    "max_gap": ("0,1\n1,1\n2,1\n9,1\n", [], "at most --max-gap = 5 m", "at most max_gap = 5 m"),
+    "start": (
+        "0,1\n1,1\n2,1\n3,1\n",
+        ["--profile-start", "nan"],
+        "error: --profile-start = NaN: must be",
+        "start = NaN: must be",
+    ),
+    "decimal": (
+        "0;1,234\n1;1,235\n",
+        [],
+        "give --decimal , or --decimal .\n",
+        "give decimal = ',' or decimal = '.'",
+    ),
+    "delimiter": (
+        "10,11\n12,13\n",
+        ["--spacing", "1"],
+        "give --decimal , or --delimiter ,\n",
+        "give decimal = ',' or delimiter = ','",
+    ),
+    "spacing": ("0.1\n0.2\n", [], "give their --spacing\n", "give their spacing"),
+    "spacing in place": (
+        "0,1\n1,1\n",
+        ["--columns", "1"],
+        "or give --spacing in place of x\n",
+        "or give spacing in place of x",
+    ),
+    "columns": (
+        "x,left,right\n0,1,2\n",
+        [],
+        "and one elevation in --columns, or",
+        "and one elevation in columns, or",
+    ),
+    "scale": ("x [rod],z [m]\n0,1\n", [], "give --scale\n", "give scale"),
+    "scale of what is steep": (
+        "".join(f"{k},{k * k % 7}\n" for k in range(40)),
+        [],
+        "as --scale 1 0.001 does",
+        "as scale = [1.0, 0.001] does in a file",
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("case", ADVICE.values(), ids=ADVICE)
+def test_advice_names_what_the_place_has(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    case: tuple[str, list[str], str, str],
+) -> None:
+    text, options, there, here = case
+    file = tmp_path / "road.txt"
+    file.write_text(text)
+    main(["road", str(file), *options])
+    assert there in capsys.readouterr().err
+    # Python and case files have other names; the command leaves nothing behind.
+    names = {"--profile-start": "start", "--columns": "columns", "--spacing": "spacing"}
+    given = {
+        names[key]: int(value) if key == "--columns" else float(value)
+        for key, value in zip(options[::2], options[1::2], strict=True)
+    }
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        try:
+            sw.roads.from_table({"kind": "profile", "file": str(file), **given})
+            said = str(told[0].message)
+        except ValueError as refused:
+            said = str(refused)
+    assert here in said
+    assert "--" not in said

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 import pickle
+import re
 import tracemalloc
 from collections.abc import Callable
 from itertools import pairwise
@@ -294,12 +295,67 @@ def test_the_standard_error_of_a_class() -> None:
     assert (sw.roads.classify(1e-4).error, sw.roads.classify(1e-4).band) == (None, None)
 
 
-@pytest.mark.parametrize(("length", "spacing"), [(60.0, 1.0), (100.0, 2.0), (2000.0, 25.0)])
-def test_too_little_for_a_class(length: float, spacing: float) -> None:
+@pytest.mark.parametrize(
+    ("length", "spacing", "seen"),
+    [
+        (60.0, 1.0, "only 0.2 to 0.4 cycle/m"),
+        (100.0, 2.0, "only 0.12 to 0.2 cycle/m"),
+        (2000.0, 25.0, "only 0.006 to 0.016 cycle/m"),
+        (272.0, 25.0, "nothing"),
+    ],
+)
+def test_too_little_for_a_class(length: float, spacing: float, seen: str) -> None:
     x = np.arange(0.0, length + spacing, spacing)
     road = sw.Profile(x, sw.ISO8608("B").elevation(x))
-    with pytest.raises(ValueError, match=r"shows only .* two octaves are needed; take a longer|"):
+    needed = f"this section shows {seen}, and two octaves are needed; take a longer section"
+    with pytest.raises(ValueError, match=re.escape(needed)):
         road.iso_class(0.0, length)
+
+
+@pytest.mark.parametrize("ask", ["psd", "iso_class"])
+@pytest.mark.parametrize("length", [1e-300, 20.0, 49.9])
+def test_what_was_not_given_is_not_blamed(ask: str, length: float) -> None:
+    x = np.arange(0.0, 100.0, 5.0)
+    road = sw.Profile(x, 1e-3 * np.sin(x))
+    said = f"end = {length:g} m: must lie 50 m or more beyond start, 0 m"
+    with pytest.raises(ValueError, match=re.escape(said)) as refused:
+        getattr(road, ask)(0.0, length)
+    assert "segment" not in str(refused.value)
+
+
+def on_points(spacing: float) -> sw.Profile:
+    """A class B road whose index is 4.36 m/km, on points."""
+    x = np.arange(0.0, 600.0, spacing)
+    return sw.Profile(x, sw.ISO8608("B", seed=4, contact_patch=0.0).elevation(x))
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.1, 0.25, 0.3, 0.3048])
+def test_points_that_hold_an_index(spacing: float) -> None:
+    assert on_points(spacing).iri(0.0, 544.0) == pytest.approx(4.36, rel=0.03)
+
+
+@pytest.mark.parametrize(("spacing", "expected"), [(0.5, 4.07), (1.0, 3.24)])
+def test_an_index_of_coarse_points_is_doubted(spacing: float, expected: float) -> None:
+    road = on_points(spacing)
+    said = rf"road: its points are {spacing:g} m apart"
+    with pytest.warns(sw.PlausibilityWarning, match=said):
+        assert road.iri(0.0, 544.0) == pytest.approx(expected, abs=0.01)
+    with pytest.warns(sw.PlausibilityWarning, match=said):
+        road.iri(0.0, 500.0, every=100.0)
+    # In a sum the coarsest counts, whatever is fine beside it.
+    with pytest.warns(sw.PlausibilityWarning, match=said):
+        (on_points(0.1) + sw.Bump(5.0, 1.0, 0.01) + road).iri(0.0, 544.0)
+
+
+@pytest.mark.parametrize("spacing", [2.0, 5.0, 20.0])
+def test_an_index_that_points_cannot_hold_is_refused(spacing: float) -> None:
+    # They gave 2.2, 1.22 and 0.16 m/km.
+    road = on_points(spacing)
+    said = rf"road: its points are {spacing:g} m apart, .*at most 1.2 m"
+    with pytest.raises(ValueError, match=said):
+        road.iri(0.0, 544.0)
+    with pytest.raises(ValueError, match=said):
+        (on_points(0.1) + road).iri(0.0, 500.0, every=100.0)
 
 
 def test_index_by_segments() -> None:
@@ -414,21 +470,21 @@ def test_profiles_from_files(tmp_path: Path) -> None:
     file.write_text(
         "# surveyed\nplace,left,right\n\n" + "".join(f"{x},0,{0.01 * x**2}\n" for x in range(6))
     )
-    road = sw.Profile.read_csv(file, columns=("place", "right"), scale=(1.0, 1e-3), detrend=True)
+    road = sw.Profile.read(file, columns=("place", "right"), scale=(1.0, 1e-3), detrend=True)
     x = np.arange(6.0)
     z = np.array([float(f"{0.01 * each**2}") for each in range(6)])
     assert road == sw.Profile(x, 1e-3 * z, detrend=True)
-    assert sw.Profile.read_csv(file, columns=(0, 2)) == sw.Profile(x, z)
+    assert sw.Profile.read(file, columns=(0, 2)) == sw.Profile(x, z)
     table = {"kind": "profile", "file": str(file), "columns": [0, 2], "contact_patch": 0.1}
     assert sw.roads.from_table(table) == sw.Profile(x, z, contact_patch=0.1)
     file.write_text("0;1\n1;1\n2;1\n3;1\n")
-    assert sw.Profile.read_csv(file, delimiter=";") == sw.Profile(x[:4], np.ones(4))
+    assert sw.Profile.read(file, delimiter=";") == sw.Profile(x[:4], np.ones(4))
 
 
 def test_points_out_of_order_and_double(tmp_path: Path) -> None:
     file = tmp_path / "road.csv"
     file.write_text("0,1\n2,3\n1,2\n2,5\n3,1\n")
-    road = sw.Profile.read_csv(file, sort=True, duplicates="mean", scale=(1, 0.1))
+    road = sw.Profile.read(file, sort=True, duplicates="mean", scale=(1, 0.1))
     assert_array_equal(road.x, [0, 1, 2, 3])
     assert_allclose(road.elevations, [0.1, 0.2, 0.4, 0.1], rtol=EXACT)
 
@@ -454,8 +510,8 @@ def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:
     file = tmp_path / "road.csv"
     file.write_text("".join(f"{a},{1e3 * b}\n" for a, b in zip(x, best, strict=True)))
     with pytest.warns(UserWarning, match="in mm"):
-        sw.Profile.read_csv(file)
-    sw.Profile.read_csv(file, scale=(1.0, 1e-3))
+        sw.Profile.read(file)
+    sw.Profile.read(file, scale=(1.0, 1e-3))
 
 
 # Refusals.

@@ -214,6 +214,22 @@ def test_what_many_read_cannot_be_written_to() -> None:
     assert sw.ISO8608("C").iri(0.0, 100.0, every=25.0) != found
 
 
+def test_factors_of_samples_are_values() -> None:
+    def made(samples: int = 3) -> sw.Ensemble:
+        vehicle, road = sw.vehicles.half_car(), sw.ISO8608("C")
+        return sw.ensemble(beam(), vehicle, samples=samples, speed=25.0, damping=0.02, road=road)
+
+    ensemble = made()
+    for factors in (ensemble.impact_factors, ensemble.ratios(0.5)):
+        for each in copies(factors):
+            assert each == factors
+            assert np.array_equal(each.sagging, factors.sagging, equal_nan=True)
+    assert made().impact_factors == ensemble.impact_factors == ensemble.ratios()
+    assert ensemble.ratios(0.5) != ensemble.impact_factors
+    assert made(4).impact_factors != ensemble.impact_factors
+    assert ensemble.impact_factors != "something else"
+
+
 def test_runs_come_back_from_other_processes() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         (there,) = pool.map(crossed, [20.0])

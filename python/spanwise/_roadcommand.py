@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
@@ -18,25 +17,26 @@ from spanwise._streams import tell
 from spanwise.case import Case
 from spanwise.report import json_lines
 from spanwise.roads import IriSegments, IsoClass, Profile, Road, Smooth
+from spanwise.roads._options import written_as
 from spanwise.summary import road_in_words
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
-#: Arguments of `Profile.read` by the options that give them.
+Found = TypeVar("Found")
+
+#: Options by the arguments of `Profile.read` that they give.
 READING: Final = {
-    "columns": "columns",
-    "spacing": "spacing",
-    "profile_start": "start",
-    "delimiter": "delimiter",
-    "decimal": "decimal",
-    "scale": "scale",
-    "sort": "sort",
-    "duplicates": "duplicates",
-    "max_gap": "max_gap",
+    "columns": "--columns",
+    "spacing": "--spacing",
+    "start": "--profile-start",
+    "delimiter": "--delimiter",
+    "decimal": "--decimal",
+    "scale": "--scale",
+    "sort": "--sort",
+    "duplicates": "--duplicates",
+    "max_gap": "--max-gap",
 }
-#: One of them in advice.
-_OPTION: Final = re.compile(rf"\b({'|'.join(READING)})(?= = | brings)")
 
 
 def add_to(commands: _SubParsersAction[Any]) -> None:
@@ -111,19 +111,14 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
 
 def run(options: argparse.Namespace) -> str:
     """Writes the file asked for, and gives the text to print."""
-    with warnings.catch_warnings(record=True) as doubts:
-        warnings.simplefilter("always", UserWarning)
+    with _doubts_told_once():
         road, files = _read(options)
-    for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
-        tell(f"spanwise: warning: {_with_options(message)}")
-    start, end = _section(road, options.start, options.end)
-    index = road.iri(start, end)
-    segments = None if options.every is None else road.iri(start, end, every=options.every)
-    found: IsoClass | str
-    try:
-        found = road.iso_class(start, end)
-    except ValueError as error:
-        found = str(error)
+        start, end = _section(road, options.start, options.end)
+        index = _or_reason(lambda: road.iri(start, end))
+        found = _or_reason(lambda: road.iso_class(start, end))
+        if isinstance(index, str) and isinstance(found, str):
+            raise ValueError(index)
+        segments = None if options.every is None else road.iri(start, end, every=options.every)
     if options.json is not None:
         table = json_lines(_as_dict(road, (start, end), index, segments, found))
         if options.json == "-":
@@ -134,30 +129,40 @@ def run(options: argparse.Namespace) -> str:
 
 def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
     """The road, and the files that it was read from."""
-    given = {key: getattr(options, key) for key in READING if getattr(options, key) is not None}
+    given = {}
+    for key, option in READING.items():
+        value = getattr(options, option.removeprefix("--").replace("-", "_"))
+        if value is not None:
+            given[key] = value
     if options.file.suffix.lower() == ".toml":
         for key in given:
-            raise ValueError(f"--{key.replace('_', '-')}: used with profiles only, not with a case")
+            raise ValueError(f"{READING[key]}: used with profiles only, not with a case")
         case = Case.read(options.file)
         return Smooth() if case.road is None else case.road, case.files
     if "columns" in given:
         given["columns"] = [int(c) if c.isdecimal() else c for c in given["columns"]]
-    with _errors():
-        road = Profile.read(options.file, **{READING[key]: each for key, each in given.items()})
-    return road, [options.file]
+    with written_as(READING):
+        return Profile.read(options.file, **given), [options.file]
 
 
 @contextmanager
-def _errors() -> Iterator[None]:
-    """Names the options as they are given here."""
+def _doubts_told_once() -> Iterator[None]:
+    """Tells warnings, though what follows may be refused."""
+    with warnings.catch_warnings(record=True) as doubts:
+        warnings.simplefilter("always", UserWarning)
+        try:
+            yield
+        finally:
+            for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
+                tell(f"spanwise: warning: {message}")
+
+
+def _or_reason(ask: Callable[[], Found]) -> Found | str:
+    """What is asked for, or why there is none."""
     try:
-        yield
+        return ask()
     except ValueError as error:
-        raise ValueError(_with_options(str(error))) from error
-
-
-def _with_options(message: str) -> str:
-    return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", message)
+        return str(error)
 
 
 def _section(road: Road, start: float | None, end: float | None) -> tuple[float, float]:
@@ -172,14 +177,14 @@ def _section(road: Road, start: float | None, end: float | None) -> tuple[float,
 def _text(
     road: Road,
     section: tuple[float, float],
-    index: float,
+    index: float | str,
     segments: IriSegments | None,
     found: IsoClass | str,
 ) -> str:
     lines = [
         f"road      {road_in_words(road)}",
         f"section   {section[0]:g} to {section[1]:g} m",
-        f"IRI       {index:.2f} m/km",
+        f"IRI       {index if isinstance(index, str) else f'{index:.2f} m/km'}",
     ]
     if isinstance(found, str):
         lines.append(f"ISO 8608  {found}")
@@ -200,7 +205,7 @@ def _text(
 def _as_dict(
     road: Road,
     section: tuple[float, float],
-    index: float,
+    index: float | str,
     segments: IriSegments | None,
     found: IsoClass | str,
 ) -> dict[str, Any]:
@@ -208,8 +213,11 @@ def _as_dict(
         "version": __version__,
         "road": road_in_words(road),
         "section": list(section),
-        "iri": index,
     }
+    if isinstance(index, str):
+        table |= {"iri": None, "iri_refused": index}
+    else:
+        table["iri"] = index
     if segments is not None:
         table["iri_segments"] = {
             "starts": segments.starts.tolist(),

@@ -8,6 +8,8 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise.roads._options import given
+
 Array: TypeAlias = NDArray[np.float64]
 
 #: Way over which slopes are taken [m]: over less, texture measured every millimetre is steep too.
@@ -20,6 +22,9 @@ _STEEP, _VERY_STEEP = 0.1, 0.5
 #: How far a point is off the line through its neighbours to be no road [m], and by how many times
 #: what is usual among the others.
 _OFF, _UNUSUAL = 0.15, 20.0
+
+#: A change of slope from point to point that no road has [-].
+_NO_GRADE: Final = 0.5
 
 
 def doubts(x: Array, elevations: Array) -> Iterator[str]:
@@ -36,13 +41,13 @@ def doubts(x: Array, elevations: Array) -> Iterator[str]:
     if slope > _VERY_STEEP:
         yield (
             f"elevations: their median slope is {slope:.3g}; are they in mm? Multiply them by "
-            "1e-3, as scale = (1.0, 1e-3) does in a file"
+            f"0.001, as {given('scale', [1.0, 0.001])} does in a file"
         )
     elif slope > _STEEP:
         yield (
             f"elevations: their median slope is {slope:.3g}, as of the roughest class of ISO 8608; "
-            "are they in cm or inches? Multiply them by 0.01 or 0.0254, as scale = (1.0, 0.01) "
-            "does in a file"
+            "are they in cm or inches? Multiply them by 0.01 or 0.0254, as "
+            f"{given('scale', [1.0, 0.01])} does in a file"
         )
 
 
@@ -59,16 +64,27 @@ def _dropped(x: Array, elevations: Array) -> tuple[int, float] | None:
     """The worst point off the line through its neighbours, and how far, if that is no road."""
     if len(x) < 4:
         return None
-    slopes = np.diff(elevations) / np.diff(x)
-    part = (x[1:-1] - x[:-2]) / (x[2:] - x[:-2])
+    steps = np.diff(x)
+    slopes = np.diff(elevations) / steps
+    part = steps[:-1] / (x[2:] - x[:-2])
     between = elevations[:-2] + part * (elevations[2:] - elevations[:-2])
-    first = elevations[1] - slopes[1] * (x[1] - x[0])
-    last = elevations[-2] + slopes[-2] * (x[-1] - x[-2])
-    off = np.abs(elevations - np.concatenate([[first], between, [last]]))
-    suspects = np.flatnonzero(off > max(_OFF, _UNUSUAL * float(np.median(off))))
+    # Off the lines that lead to a point from the left and from the right.
+    left = elevations[2:] - (elevations[1:-1] + slopes[:-1] * steps[1:])
+    right = elevations[:-2] - (elevations[1:-1] - slopes[1:] * steps[:-1])
+    off = np.concatenate([right[:1], elevations[1:-1] - between, left[-1:]])
+    unusual = np.abs(off) > max(_OFF, _UNUSUAL * float(np.median(np.abs(off))))
+    # A spike is off both of these lines too, and a break of grade lies on them. Ends, which have
+    # one of them alone, and drop-outs in a row are told from grades by what no road has.
+    spike = np.full(len(x), True)
+    spike[[0, -1]] = False
+    spike[2:] &= left * np.sign(off[2:]) > 0.5 * np.abs(off[2:])
+    spike[:-2] &= right * np.sign(off[:-2]) > 0.5 * np.abs(off[:-2])
+    bends = np.abs(np.diff(slopes))
+    bent = np.concatenate([bends[:1], bends, bends[-1:]]) > _NO_GRADE
+    suspects = np.flatnonzero(unusual & (spike | bent))
     if len(suspects) == 0:
         return None
     # Good points beside a drop-out are off too, but not the farthest from all others.
     away = np.abs(elevations[suspects] - np.median(elevations))
     point = int(suspects[np.argmax(away)])
-    return point, float(off[point])
+    return point, float(abs(off[point]))

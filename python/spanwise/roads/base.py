@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise._value import Brief
+from spanwise._warnings import PlausibilityWarning
 from spanwise.roads import roughness
 from spanwise.roads.roughness import IriSegments
 
@@ -196,7 +198,14 @@ class Road(Brief):
         Raises
         ------
         ValueError
-            If the section is too short or too long, or the road is not known on it.
+            If the section is too short or too long, or the road is not known on it, or by points
+            more than 1.2 m apart, which do not hold the waves of 2.4 m that the index feels most.
+
+        Warns
+        -----
+        PlausibilityWarning
+            If points are more than 0.3 m apart: the index is too low then, on roads of ISO 8608 by
+            about 7 % where they are 0.5 m apart, and by 25 % where they are 1 m.
 
         Notes
         -----
@@ -220,10 +229,20 @@ class Road(Brief):
         for computing International Roughness Index of roads from longitudinal profile measurements.
         """
         start, end = number("start", start), number("end", end)
+        found: float | IriSegments
         if every is None:
-            return 1e3 * self._core.iri(start, end)
-        edges, values, lead_in = self._core.iri_segments(start, end, number("every", every))
-        return IriSegments(edges[:-1], edges[1:], 1e3 * values, lead_in)
+            found = 1e3 * self._core.iri(start, end)
+        else:
+            edges, values, lead_in = self._core.iri_segments(start, end, number("every", every))
+            found = IriSegments(edges[:-1], edges[1:], 1e3 * values, lead_in)
+        doubt = roughness.doubt_of_index(self._spacing_on(start, end))
+        if doubt is not None:
+            warnings.warn(doubt, PlausibilityWarning, stacklevel=2)
+        return found
+
+    def _spacing_on(self, start: float, end: float) -> float:
+        """Distance of the points of a measured road, of the coarsest part of a sum; else 0 [m]."""
+        return 0.0
 
     def psd(
         self,
@@ -360,6 +379,9 @@ class Sum(Road):
 
     def _times(self, factor: float) -> Road:
         return total(part * factor for part in self.parts)
+
+    def _spacing_on(self, start: float, end: float) -> float:
+        return max((part._spacing_on(start, end) for part in self.parts), default=0.0)
 
     @property
     def surface(self) -> Road:

@@ -8,17 +8,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar, Final, Literal, TypeAlias
+from typing import Any, ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
 from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
+from spanwise._renamed import renamed
 from spanwise._warnings import PlausibilityWarning
 from spanwise.roads._doubts import doubts
+from spanwise.roads._options import called, given
 from spanwise.roads.base import CONTACT_PATCH, Road
 from spanwise.roads.reading import read_points
+from spanwise.roads.roughness import HELD
 from spanwise.roads.sheet import Column
 
 Array: TypeAlias = NDArray[np.float64]
@@ -101,6 +104,10 @@ class Profile(Road):
         """Median distance of neighbouring points [m]."""
         return float(np.median(np.diff(self.x)))
 
+    def _spacing_on(self, start: float, end: float) -> float:
+        # The core knows how far they are apart nearly everywhere, as the shortest wave they hold.
+        return HELD / self._core.waves(start, end)[0]
+
     def _made(self) -> _core.Road:
         return _core.Road.profile(
             x=self.x,
@@ -138,7 +145,8 @@ class Profile(Road):
         columns : list of int or str, or one of them, optional
             Numbers, from 0, or names of the columns with x and elevation, or with elevation alone
             beside `spacing` and in ERD files with a step. Of several elevations, such as left and
-            right track, the mean is taken. Without, the first two, or the only elevation.
+            right track, the mean is taken. Without, the first two, if there are names of no more,
+            or the only elevation.
         spacing : float, optional
             Distance of the points [m], where no column has x.
         start : float, optional
@@ -153,7 +161,8 @@ class Profile(Road):
         scale : tuple of float, optional
             What x and elevation are multiplied by to give metres, such as ``(1.0, 1e-3)`` for
             elevations in millimetres. Without, by the units that the file names: those of an ERD
-            file, a line of units, or units in brackets with the names.
+            file, a line of units, or units with the names, as in ``z [mm]``, ``z (mm)``,
+            ``z / mm``, ``z in mm`` and ``z_mm``.
         sort : bool, optional
             Whether to bring the points into the order of x. Where x falls from point to point,
             that is done anyway.
@@ -179,9 +188,9 @@ class Profile(Road):
         ----------
         University of Michigan Transportation Research Institute, "The ERD file specification".
         """
-        kept = choice("duplicates", duplicates, _DUPLICATES)
-        offset = None if start is None else finite("start", start)
-        is_sorted = flag("sort", sort)
+        kept = choice(called("duplicates"), duplicates, _DUPLICATES)
+        offset = None if start is None else finite(called("start"), start)
+        is_sorted = flag(called("sort"), sort)
         path = file_path("path", path)
         x, elevations, lines = read_points(path, columns, spacing, delimiter, decimal, scale)
         steps = np.diff(x)
@@ -197,8 +206,11 @@ class Profile(Road):
         except ValueError as error:
             raise ValueError(_in_file(str(error), path, x, lines)) from None
 
-    #: The name it had when it read tables only.
-    read_csv = read
+    @classmethod
+    def read_csv(cls, path: str | Path, **options: Any) -> Profile:
+        """The name that `read` had when it read tables only."""
+        renamed("Profile.read_csv", "Profile.read")
+        return cls.read(path, **options)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Profile):
@@ -245,6 +257,7 @@ def _merged(x: Array, elevations: Array, lines: Array, kept: str) -> tuple[Array
 
 def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
     """What is wrong with a profile, with the line of the file and what may mend it."""
+    message = message.replace("max_gap", called("max_gap"))
     found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
     if found is None:
         return message
@@ -253,7 +266,8 @@ def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
     point = int(found[2])
     where = f"{path}, line {lines[point]:.0f}: {message}"
     if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
-        return f"{where}; duplicates = mean, first or last takes one elevation there"
+        takes = "takes the mean there, 'first' or 'last' one elevation"
+        return f"{where}; {given('duplicates', 'mean')} {takes}"
     if found[1] == "x" and point > 0 and x[point] < x[point - 1]:
-        return f"{where}; sort brings the points into the order of x"
+        return f"{where}; {called('sort')} brings the points into the order of x"
     return where

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import chain, islice
@@ -9,6 +10,7 @@ from typing import Final, TypeAlias
 
 from spanwise._checks import shown
 from spanwise.roads import erd
+from spanwise.roads._options import called
 from spanwise.roads.sniffing import DELIMITERS, decimal_of, delimiter_of, rows_of, value_of
 
 #: Number or name of a column.
@@ -22,6 +24,10 @@ _SEEN: Final = 200
 #: Metres in the units that headings name.
 METRES: Final = {
     "m": 1.0,
+    "metre": 1.0,
+    "metres": 1.0,
+    "meter": 1.0,
+    "meters": 1.0,
     "dm": 0.1,
     "cm": 1e-2,
     "mm": 1e-3,
@@ -29,7 +35,11 @@ METRES: Final = {
     "μm": 1e-6,
     "um": 1e-6,
     "km": 1e3,
+    "yd": 0.9144,
+    "yard": 0.9144,
+    "yards": 0.9144,
     "ft": 0.3048,
+    "foot": 0.3048,
     "feet": 0.3048,
     "in": 0.0254,
     "inch": 0.0254,
@@ -37,6 +47,12 @@ METRES: Final = {
     "mil": 2.54e-5,
     "mils": 2.54e-5,
 }
+
+#: Units that a name has, in brackets or after a stroke, and its last word, which may be one.
+_TOLD: Final = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|\s/\s*([^\s/]+)$")
+_ENDING: Final = re.compile(r"[\s_/,]([^\s_/,]+)$")
+#: A name between blanks with its units, or a unit alone.
+_WORD: Final = re.compile(r"\[[^\]]*\]|\([^)]*\)|\S+(?: \[[^\]]*\]| \([^)]*\)| / ?\S+)*")
 
 
 @dataclass
@@ -56,7 +72,7 @@ class Sheet:
     expected : int
         Number of rows that there should be; less than 1 if it is not known.
     is_strict : bool
-        Whether units always are units, and not any words in brackets.
+        Whether what is said in place of units is meant to be one, and not any words in brackets.
     """
 
     rows: Iterator[Row]
@@ -70,7 +86,7 @@ class Sheet:
     def metres(self, unit: str) -> float:
         """What values in a unit are multiplied by; by 1 if there is none."""
         if self.is_strict and unit and unit.lower() not in METRES:
-            raise ValueError(f"unit {unit!r}: is not known; give scale")
+            raise ValueError(f"unit {unit!r}: is not known; give {called('scale')}")
         return METRES.get(unit.lower(), 1.0)
 
 
@@ -107,7 +123,10 @@ def table_of(
         )
     points = chain((row for row, _ in lead[head:]), first, rows)
     titles = [cells for (_, cells), numbers in lead[:head] if numbers == 0]
-    return Sheet(points, *_head(titles, delimiter, columns), decimal)
+    names, units = _head(titles, delimiter, columns)
+    # Square brackets are for units; where one is known, all others are meant to be.
+    is_strict = any(unit in METRES for unit in units) or any("[" in name for name in names)
+    return Sheet(points, names, units, decimal, is_strict=is_strict)
 
 
 def _head(
@@ -115,29 +134,33 @@ def _head(
 ) -> tuple[list[str], list[str]]:
     """Names and units of the columns."""
     units: list[str] = []
-    if titles and all(_unit(cell) in METRES for cell in titles[-1] if cell):
-        units = [_unit(cell) for cell in titles.pop()]
     if delimiter == " ":
         titles = [_joined(cells) for cells in titles]
+    # A line of units may have some of what is not read.
+    held = [_unit(cell) in METRES for cell in titles[-1] if cell] if titles else []
+    if any(held) and 2 * sum(held) >= len(held):
+        units = [_unit(cell) for cell in titles.pop()]
     words = {each for each in columns if isinstance(each, str)}
     named = [cells for cells in titles if words and words.issubset(cells)]
     names = (named or titles or [[]])[-1]
-    return names, units or [_unit(name[name.rfind("[") :] if "[" in name else "") for name in names]
+    return names, units or [_unit_in(name) for name in names]
+
+
+def _unit_in(name: str) -> str:
+    """The last unit that a name has: one that is known, or else what stands in place of one."""
+    told = [_unit("".join(groups)) for groups in _TOLD.findall(name)]
+    ending = _ENDING.search(name)
+    words = [*told, *([] if ending is None else [_unit(ending[1])])]
+    return next((each for each in reversed(words) if each in METRES), (told or [""])[-1])
 
 
 def _unit(text: str) -> str:
-    return text.strip("[]() ").lower()
+    return text.strip("[](). ").lower()
 
 
 def _joined(cells: list[str]) -> list[str]:
-    """Words between blanks, a unit in brackets with the word before."""
-    found: list[str] = []
-    for cell in cells:
-        if found and cell.startswith(("[", "(")):
-            found[-1] += f" {cell}"
-        else:
-            found.append(cell)
-    return found
+    """Words between blanks, a unit in brackets or after a stroke with the word before."""
+    return _WORD.findall(" ".join(cells))
 
 
 def erd_of(lines: Callable[[], Iterator[str]]) -> Sheet:

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from spanwise._checks import shown
+from spanwise.roads._options import given
 
 #: Delimiters that are looked for; where two serve alike the first is meant. Blanks come in runs.
 DELIMITERS: Final = ("\t", ";", "|", " ", ",")
@@ -70,7 +71,8 @@ def value_of(text: str, decimal: str) -> float | None:
     """The number that a text is: 1,234.5 or 1 234.5 by groups, 1+234.5 as a station; or None."""
     if decimal == ".":
         try:
-            return float(text)
+            # An underscore, which Python allows, is none of a number in a file.
+            return None if "_" in text else float(text)
         except ValueError:
             pass
     found = _PATTERNS["," if decimal == "," else r"\."].fullmatch(text.replace("\u2212", "-"))
@@ -109,7 +111,7 @@ def delimiter_of(lines: Sequence[str], least: int, decimal: str | None) -> str:
             return ","
         # No whole number begins with 0: 3,05 is one number.
         if not any(re.search(r",0\d", pair) for pair in pairs):
-            allowed = "give decimal = ',' or delimiter = ','"
+            allowed = f"give {given('decimal', ',')} or {given('delimiter', ',')}"
             raise ValueError(f"{shown(pairs[0])} may be one number or two; {allowed}")
     return best if any(served(best)) else ","
 
@@ -136,7 +138,7 @@ def decimal_of(rows: Iterable[list[str]], least: int) -> str:
                 return marks[0]
             doubtful = cell if marks[0] == "," else doubtful
     if doubtful is not None:
-        allowed = "give decimal = ',' or decimal = '.'"
+        allowed = f"give {given('decimal', ',')} or {given('decimal', '.')}"
         raise ValueError(f"{shown(doubtful)} may be thousands or have decimals; {allowed}")
     return "."
 
