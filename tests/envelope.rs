@@ -124,7 +124,9 @@ fn axle_loads() {
     let run = crossed(&kishan_bridge(), ForceSummation);
     let history = &run.outcome.history;
     for k in 0..2 {
-        let loads: Vec<f64> = history.loads.iter().skip(k).step_by(2).copied().collect();
+        // In the tail they do not count.
+        let there = 2 * (history.last_on + 1);
+        let loads: Vec<f64> = history.loads[..there].iter().skip(k).step_by(2).copied().collect();
         let (max, min) = (run.outcome.axle_loads.dynamic.max[k], run.outcome.axle_loads.dynamic.min[k]);
         assert_eq!(max.value, loads.iter().copied().fold(f64::MIN, f64::max));
         assert_eq!(min.value, loads.iter().copied().fold(f64::MAX, f64::min));
