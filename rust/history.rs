@@ -134,24 +134,30 @@ impl History {
         all
     }
 
-    /// The instants from the first with an axle on a bridge of this length [m] to that at which the last axle leaves it.
-    pub fn on_bridge(&self, length: f64) -> RangeInclusive<usize> {
+    /// The instants from the first with one of these axles on a bridge of this length [m] to that at which the last of
+    /// them leaves it.
+    pub fn on_bridge(&self, axles: &Range<usize>, length: f64) -> RangeInclusive<usize> {
         // With the last axle on the end of the bridge, rounding does not decide.
         let bridge = 0.0..=length * (1.0 + 1e-12);
-        let on = |i: &usize| self.positions[i * self.axles..(i + 1) * self.axles].iter().any(|x| bridge.contains(x));
+        let on = |i: &usize| self.positions[i * self.axles..][axles.clone()].iter().any(|x| bridge.contains(x));
         let first = (0..self.len()).find(on).unwrap_or(0);
         first..=(first..self.len()).rev().find(on).unwrap_or(first)
     }
 
-    /// Root mean square of each axle load about its static value, by that value, over [`History::on_bridge`] [-].
+    /// Root mean square of each axle load about its static value, by that value, while its vehicle is on a bridge of this
+    /// length [m] [-].
     pub fn load_coefficients(&self, length: f64) -> Vec<f64> {
-        let there = self.on_bridge(length);
-        let count = there.clone().count() as f64;
-        let coefficient = |(k, at_rest): (usize, &f64)| {
-            let squares: f64 = there.clone().map(|i| (self.loads[i * self.axles + k] - at_rest).powi(2)).sum();
-            (squares / count).sqrt() / at_rest
-        };
-        self.static_loads.iter().enumerate().map(coefficient).collect()
+        let mut found = Vec::with_capacity(self.axles);
+        for Columns { axles, .. } in &self.vehicles {
+            let there = self.on_bridge(axles, length);
+            let count = there.clone().count() as f64;
+            found.extend(axles.clone().map(|k| {
+                let at_rest = self.static_loads[k];
+                let squares: f64 = there.clone().map(|i| (self.loads[i * self.axles + k] - at_rest).powi(2)).sum();
+                (squares / count).sqrt() / at_rest
+            }));
+        }
+        found
     }
 
     pub(crate) fn record<'a>(

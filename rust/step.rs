@@ -146,7 +146,8 @@ struct Unit<L> {
     positions: Vec<L>,
     /// Mass that rests on each contact [kg].
     shares: Vec<L>,
-    /// Acceleration by its weight down the grade, in its direction [m/s²].
+    /// Acceleration by its weight down the grade, in its direction [m/s²]; zero where its motion is prescribed from the
+    /// start.
     pull: L,
     /// How it stands still, where a step takes no time.
     stand: Option<Stand<L>>,
@@ -463,7 +464,10 @@ impl<L: Lane> Stepper<L> {
                 coordinates: coordinate..coordinate + q,
                 positions: assembly.contacts.iter().map(|c| L::splat(c.position)).collect(),
                 shares: assembly.contacts.iter().map(|c| L::splat(c.share)).collect(),
-                pull: L::splat(-gravity * vehicle.grade),
+                pull: L::splat(match vehicle.propulsion {
+                    Propulsion::Prescribed => 0.0,
+                    Propulsion::Rolling => -gravity * vehicle.grade,
+                }),
                 stand: (h == 0.0 && q > 0).then(|| Stand::new(assembly, gravity, !lift_off)),
                 brakes: None,
             });
@@ -682,7 +686,8 @@ impl<L: Lane> Stepper<L> {
         self.elements.contacts.iter().map(|c| c.static_load).collect()
     }
 
-    /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, and it rocks about them.
+    /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, held against the grade, and it
+    /// rocks about them.
     pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
         self.units[vehicle].rig = standing;
         self.units[vehicle].propulsion = Propulsion::Prescribed;
@@ -879,7 +884,8 @@ impl<L: Lane> Stepper<L> {
         for unit in &mut self.units[..form.vehicles] {
             if unit.propulsion == Propulsion::Prescribed {
                 for (contact, share) in unit.contacts.clone().zip(&unit.shares) {
-                    state.along[contact] = L::splat(unit.direction) * geometry.motion(contact).a * *share;
+                    let gain = L::splat(unit.direction) * geometry.motion(contact).a;
+                    state.along[contact] = (gain - unit.pull) * *share;
                 }
             }
             let bodies = &desk.bodies[unit.coordinates.clone()];

@@ -277,3 +277,38 @@ def test_a_wheel_that_stands_on_a_free_end_loads_the_bridge() -> None:
     ratio = run.axle_loads[0, 0] / level.axle_loads[0, 0]
     assert ratio > 1.01
     assert_allclose(run.modal.accelerations[0], ratio * level.modal.accelerations[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("direction", ["right", "left"])
+@pytest.mark.parametrize("grade", [-0.05, 0.03])
+def test_brakes_that_hold_on_a_grade_shift_load(grade: float, direction: Any) -> None:
+    """By hand: m g grade h by the wheelbase, off the front axle uphill; unsprung masses are low."""
+    road = sw.Profile(X, grade * X)
+    uphill = grade if direction == "right" else -grade
+    drive = sw.Braking(deceleration=4.0, start=-40.0)
+    for height in (0.8, 1.5):
+        vehicle = sw.vehicles.half_car(cg_height=height)
+        passage = sw.Passage(vehicle=vehicle, direction=direction, drive=drive)
+        given: dict[str, Any] = {
+            "speed": 20.0,
+            "approach": 60.0,
+            "tail": 30.0,
+            "beta": 0.25,
+            "step": 5e-3,
+        }
+        run = sw.cross(BRIDGE, [passage], road=road, modes=1, damping=0.05, **given)
+        assert run.vehicle.stopped is not None
+        transfer = 16_200.0 * GRAVITY * uphill * height / 4.75
+        found = run.axle_loads[-1] - run.static_axle_loads
+        assert found == pytest.approx([-transfer, transfer], rel=2e-3)
+
+
+def test_who_brakes_to_rest_as_prescribed_holds_its_static_loads() -> None:
+    """Under prescribed motion what a grade shifts is left out, at rest too."""
+    road = sw.Profile(X, -0.05 * X)
+    drive = sw.Speeds(times=[0.0, 3.0, 4.0], speeds=[20.0, 18.0, 0.0])
+    passage = sw.Passage(vehicle=sw.vehicles.half_car(cg_height=1.5), drive=drive)
+    given: dict[str, Any] = {"approach": 58.0, "tail": 40.0, "beta": 0.25, "step": 5e-3, "modes": 1}
+    run = sw.cross(BRIDGE, [passage], road=road, damping=0.05, **given)
+    assert run.vehicle.stopped is not None
+    assert run.axle_loads[-1] == pytest.approx(run.static_axle_loads, rel=1e-4)

@@ -1,9 +1,10 @@
-"""Load coefficients: about the static load, from the first axle on the bridge to the last off."""
+"""Load coefficients: about the static load, from a vehicle's first axle on to its last off."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,11 +17,15 @@ TRUCK = sw.vehicles.half_car()
 
 
 def by_hand(run: sw.Run) -> np.ndarray:
-    x = np.concatenate([vehicle.axle_positions for vehicle in run.vehicles], axis=1)
-    on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
-    first, last = np.flatnonzero(on)[[0, -1]]
-    parts = run.axle_loads[first : last + 1] / run.static_axle_loads - 1.0
-    return np.asarray(np.sqrt((parts**2).mean(axis=0)))
+    found: list[float] = []
+    for vehicle in run.vehicles:
+        x = vehicle.axle_positions
+        on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
+        first, last = np.flatnonzero(on)[[0, -1]]
+        own = slice(len(found), len(found) + x.shape[1])
+        parts = run.axle_loads[first : last + 1, own] / run.static_axle_loads[own] - 1.0
+        found += np.sqrt((parts**2).mean(axis=0)).tolist()
+    return np.array(found)
 
 
 def crossing(speed: float) -> sw.Run:
@@ -56,6 +61,25 @@ def test_several_vehicles_and_all_that_says_it(tmp_path: Path) -> None:
     given = {"road": road, "approach": 30.0, "damping": 0.02, "samples": 2}
     found = sw.ensemble(BRIDGE, passages, **given)  # type: ignore[arg-type]
     assert_array_equal(found.load_coefficients[0], found.run(0).load_coefficients)
+
+
+@pytest.mark.parametrize("entry", [4.0, 9.0])
+@pytest.mark.parametrize("direction", ["right", "left"])
+def test_nobody_else_counts(entry: float, direction: Any) -> None:
+    """A vehicle that comes long after another does not lengthen the time of the first."""
+    first = sw.Passage(vehicle=TRUCK)
+    other = sw.Passage(vehicle=sw.ForceTrain(loads=[1.0]), direction=direction, entry=entry)
+    given = {"speed": 20.0, "road": sw.ISO8608("C", seed=3), "step": 2e-3, "approach": 30.0}
+    alone, both = (sw.cross(BRIDGE, e, **given) for e in (first, [first, other]))  # type: ignore[arg-type]
+    # A vehicle alone takes steps that end with it: it meets the road at other instants.
+    alike = 1e-2
+    assert both.load_coefficients == pytest.approx([*alone.load_coefficients, 0.0], rel=alike)
+    one, two = (
+        sw.ensemble(BRIDGE, [event], samples=2, **given)  # type: ignore[arg-type]
+        for event in ([first], [first, other])
+    )
+    assert two.body_accelerations.rms == pytest.approx(one.body_accelerations.rms, rel=alike)
+    assert two.load_coefficients[:, :2] == pytest.approx(one.load_coefficients, rel=alike)
 
 
 def test_constant_forces_do_not_vary() -> None:

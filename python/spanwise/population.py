@@ -92,7 +92,7 @@ class BodyAccelerations(Value):
     max : ndarray, shape (sample, body)
         Largest magnitude until the last axle has left the bridge, on the approach too [m/s2].
     rms : ndarray, shape (sample, body)
-        Root mean square from the first axle on the bridge to the last off it [m/s2].
+        Root mean square from the vehicle's first axle on the bridge to its last off it [m/s2].
     """
 
     max: Array
@@ -447,8 +447,9 @@ class Ensemble:
     def load_coefficients(self) -> Array:
         """How much the axle loads vary about their static values [-], shape (sample, axle).
 
-        The root mean square of P - P_st by P_st, over the steps from the first with an axle on the
-        bridge to that with which the last axle leaves it: `Run.load_coefficients`, bit for bit.
+        The root mean square of P - P_st by P_st, over the steps from the first with an axle of the
+        same vehicle on the bridge to that with which the last of them leaves it:
+        `Run.load_coefficients`, bit for bit.
         """
         return self._rows.block("load_coefficients")
 

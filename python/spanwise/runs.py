@@ -483,9 +483,10 @@ class Run(Responses):
     def load_coefficients(self) -> Array:
         """How much the axle loads vary about their static values [-], shape (axle,).
 
-        The root mean square of P - P_st by P_st, over the steps from the first with an axle on the
-        bridge to that with which the last axle leaves it. It is taken about the static load, not
-        about the mean: on a short bridge an axle may be above it nearly all the time.
+        The root mean square of P - P_st by P_st, over the steps from the first with an axle of the
+        same vehicle on the bridge to that with which the last of them leaves it. It is taken about
+        the static load, not about the mean: on a short bridge an axle may be above it nearly all
+        the time.
         """
         return frozen(self._core.load_coefficients)
 

@@ -154,7 +154,7 @@ pub fn cross(
     Ok(())
 }
 
-/// Contact forces and accelerations until the last vehicle has left the bridge; means over [`History::on_bridge`].
+/// Contact forces and accelerations until the last vehicle has left the bridge; means while their own is on it.
 fn ride(
     history: &History,
     length: f64,
@@ -164,8 +164,6 @@ fn ride(
     instants: &mut [u32],
 ) {
     let axles = history.axles;
-    let there = history.on_bridge(length);
-    let count = there.clone().count() as f64;
     put(Column::LoadCoefficients, 0, &mut history.load_coefficients(length).into_iter());
     let lifts = history.lift_offs();
     let of = |k: usize| lifts.iter().filter(move |lift| lift.axle == k);
@@ -176,6 +174,8 @@ fn ride(
     }
     let mut body = 0;
     for (columns, passage) in history.vehicles.iter().zip(passages) {
+        let there = history.on_bridge(&columns.axles, length);
+        let count = there.clone().count() as f64;
         for [heave, _] in &passage.vehicle.assembly().bodies {
             let acceleration = |i: usize| -> f64 {
                 let row = &history.motion[i * history.motion_width()..][columns.motion.clone()];
