@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
-from spanwise.population import FACTORS
+from spanwise.samples import FACTORS
 
 Same: TypeAlias = Callable[[sw.Ensemble, int, sw.Run], None]
 

@@ -18,7 +18,7 @@ import spanwise as sw
 from spanwise.plotting import compare_convergence, compare_impact_factors
 from spanwise.plotting.envelope import branches
 from spanwise.plotting.style import LINES, MEASURES
-from spanwise.runs import QUANTITIES, Quantity
+from spanwise.responses import QUANTITIES, Quantity
 
 
 @dataclass(frozen=True)

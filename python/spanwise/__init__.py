@@ -10,7 +10,9 @@ from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
 from spanwise.ensembles import ensemble
 from spanwise.layout import Along, Support
-from spanwise.population import Ensemble, Failure
+from spanwise.motions import LiftOff
+from spanwise.population import Ensemble
+from spanwise.responses import Envelope, Extremes
 from spanwise.roads import (
     ISO8608,
     Bump,
@@ -22,7 +24,8 @@ from spanwise.roads import (
     Smooth,
     Step,
 )
-from spanwise.runs import Envelope, Extremes, LiftOff, Run
+from spanwise.runs import Run
+from spanwise.samples import Failure
 from spanwise.table import ImpactFactors
 from spanwise.traffic import Acceleration, Braking, Passage, Speeds, convoy
 from spanwise.trains import ForceTrain, MovingMasses

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._values import axle_names, envelope, history, places, plain, quantities
-from spanwise.runs import Motion, Quantity, Run, VehicleMotion
+from spanwise.motions import Motion, VehicleMotion
+from spanwise.responses import Quantity
+from spanwise.runs import Run
 from spanwise.table import COLUMNS
 
 Array: TypeAlias = NDArray[np.float64]

@@ -23,8 +23,9 @@ from spanwise._values import from_plain, plain
 from spanwise._vehicletable import table_of, vehicle_of
 from spanwise.bridge import bridge_of
 from spanwise.damping import in_words
-from spanwise.population import FACTORS, Ensemble
+from spanwise.population import Ensemble
 from spanwise.roads import Road, from_table
+from spanwise.samples import FACTORS
 from spanwise.traffic import Passage, plain_drive
 
 #: Percentiles of the plain values.

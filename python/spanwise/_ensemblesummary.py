@@ -15,8 +15,9 @@ from spanwise._shown import many
 from spanwise._variation import Factors
 from spanwise.columns import ROUNDING, SampleExtremes, Sense
 from spanwise.damping import in_words
-from spanwise.population import FACTORS, Ensemble
+from spanwise.population import Ensemble
 from spanwise.roads import ISO8608, Road, Sum
+from spanwise.samples import FACTORS
 from spanwise.summary import road_in_words
 from spanwise.traffic import Passage, plain_drive
 from spanwise.traffic import Speeds as SpeedsInTime

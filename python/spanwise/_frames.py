@@ -14,7 +14,8 @@ from spanwise._ensemblesummary import by_sense, governing
 from spanwise._extras import require
 from spanwise._files import write_files
 from spanwise.columns import SampleExtremes
-from spanwise.population import FACTORS, Ensemble, Factor
+from spanwise.population import Ensemble
+from spanwise.samples import FACTORS, Factor
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 if TYPE_CHECKING:
-    from spanwise.runs import Quantity, Run
+    from spanwise.responses import Quantity
+    from spanwise.runs import Run
 
 Side: TypeAlias = Literal["max", "min"]
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import named, shown
-from spanwise.runs import QUANTITIES, Quantity, Run
+from spanwise.responses import QUANTITIES, Quantity
+from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
 

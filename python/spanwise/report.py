@@ -18,7 +18,8 @@ from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import envelope, history, places, plain, quantities, stop
 from spanwise._vehicletable import table_of
 from spanwise.damping import in_words
-from spanwise.runs import QUANTITIES, Quantity, Run
+from spanwise.responses import QUANTITIES, Quantity
+from spanwise.runs import Run
 from spanwise.table import COLUMNS
 
 if TYPE_CHECKING:

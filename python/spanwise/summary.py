@@ -15,8 +15,9 @@ from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
 from spanwise.layout import Support
+from spanwise.responses import Envelope, Extremes, Quantity
 from spanwise.roads import ISO8608, Profile, Road, Sum
-from spanwise.runs import Envelope, Extremes, Quantity, Run
+from spanwise.runs import Run
 from spanwise.table import factor_text
 from spanwise.traffic import Passage, plain_drive
 from spanwise.vehicle import Vehicle

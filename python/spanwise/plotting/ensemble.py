@@ -28,8 +28,8 @@ from spanwise.plotting.style import (
     whole,
     zero_line,
 )
-from spanwise.population import FACTORS as FACTORS_OF
-from spanwise.population import Factor
+from spanwise.samples import FACTORS as FACTORS_OF
+from spanwise.samples import Factor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

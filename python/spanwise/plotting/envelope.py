@@ -21,7 +21,8 @@ from spanwise.plotting.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.runs import Envelope, Quantity, Run
+    from spanwise.responses import Envelope, Quantity
+    from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
 

@@ -15,7 +15,8 @@ from spanwise.plotting.style import LIFTED, metres
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.runs import Quantity, Responses, Run
+    from spanwise.responses import Quantity, Responses
+    from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
 Side: TypeAlias = Literal["left", "right"]

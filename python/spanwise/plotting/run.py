@@ -38,7 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-    from spanwise.runs import Quantity, Run
+    from spanwise.responses import Quantity
+    from spanwise.runs import Run
     from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
