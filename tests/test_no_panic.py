@@ -59,19 +59,12 @@ def test_matrices_of_other_shapes_are_refused_as_by_a_fresh_bridge() -> None:
 def test_no_call_before_matters(made: Any) -> None:
     rng = np.random.default_rng(17)
     ways: list[dict[str, Any]] = []
-    dampings: list[Any] = [
-        0.0,
-        0.02,
-        [0.01, 0.02],
-        [0.01] * 4,
-        np.eye(4),
-        np.eye(3),
-        np.ones((3, 4)),
-    ]
-    sections: list[Any] = [None, [5.0], [5.0, 15.0], [5.0, 15.0, 35.0], [41.0]]
-    for _ in range(60):
+    matrices: list[Any] = [np.eye(4), 2.0 * np.eye(4), np.eye(3), np.ones((4, 5))]
+    dampings = [0.0, [0.01, 0.02], [0.01] * 4, *matrices]
+    sections: list[Any] = [None, [5.0], [5.0, 15.0, 35.0], [41.0]]
+    for _ in range(150):
         how: dict[str, Any] = {
-            "modes": int(rng.integers(0, 6)),
+            "modes": int(rng.integers(1, 4)),
             "damping": dampings[rng.integers(len(dampings))],
             "sections": sections[rng.integers(len(sections))],
         }
