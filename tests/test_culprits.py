@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from typing import Any
 
 import numpy as np
@@ -58,9 +59,15 @@ def test_an_advance_too_short_is_named(advance: float) -> None:
     ],
 )
 def test_a_factor_too_far_from_1_is_named(name: str, factor: float) -> None:
+    named = rf"^factors\['{name}'\]"
+    with pytest.raises(ValueError, match=named):
+        sw.ensemble(BRIDGE, TRUCK, samples=3, factors={name: factor}, **GIVEN)
+    # Beside others it is that sample's own failure.
     varied = np.array([1.0, factor, 1.0])
-    with pytest.raises(ValueError, match=rf"^factors\['{name}'\]"):
-        sw.ensemble(BRIDGE, TRUCK, samples=3, factors={name: varied}, **GIVEN)
+    found = sw.ensemble(BRIDGE, TRUCK, samples=3, factors={name: varied}, **GIVEN)
+    (failure,) = found.failures
+    assert failure.row == 1
+    assert re.match(named, failure.cause)
 
 
 AXLES = [

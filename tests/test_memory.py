@@ -43,7 +43,7 @@ ASKED = [
         "step=0.01, **given)",
         "ValueError sections = ",
     ),
-    ("sw.cross(bridge, truck, **dict(given, modes=6, step=1.2e-6))", "ValueError modes = "),
+    ("sw.cross(bridge, truck, **dict(given, modes=6, step=1.2e-6))", "ValueError step = "),
     ("r = sw.cross(bridge, truck, step=4e-6, **given); r.moment; r.deflection; r.shear_left", None),
     (
         "sw.ensemble(bridge, [truck] * 3000, samples=3000, kind=range(3000), advance=0.05, "
