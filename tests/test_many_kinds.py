@@ -105,7 +105,7 @@ def test_no_slower_than_a_loop() -> None:
         started = time.process_time()
         sw.ensemble(BRIDGE, kinds, samples=60, kind=range(60), threads=1, own_roads=False, **given)
         ratios.append((time.process_time() - started) / crossed)
-    # Fourteen when tables were laid out for each; now 0.7 to 0.95, and times differ by more than that.
+    # Fourteen when tables were laid out for each; now 0.7 to 0.95, but times vary by more.
     assert min(ratios) < 1.5, ratios
 
 
