@@ -88,7 +88,7 @@ def growth_in_words(growth: Growth) -> str:
     name, unit, scale = SIDES[growth.quantity, growth.side]
     return (
         f"{name}: {growth.reach * scale:.3f} {unit} at x = {growth.x:.3f} m, "
-        f"recorded {growth.recorded * scale + 0.0:.3f}"
+        f"recorded there {growth.recorded * scale + 0.0:.3f}"
     )
 
 

@@ -58,9 +58,12 @@ def _description(run: Run) -> Iterator[str]:
     yield f"          {tail_in_words(run)}"
     yield f"          recovery by {used['recovery']}"
     if run.can_grow:
-        yield "note      free vibration after the end can reach more than was recorded:"
+        yield "note      free vibration after the end can reach more than was recorded; at most,"
+        yield "          where it grows most:"
     for growth in run.can_grow:
         yield f"          {growth_in_words(growth)}"
+    if run.can_grow and used["tail"] is not None:
+        yield "          (without `tail` the record goes on until no extreme can follow)"
     for k in range(len(run.passages)):
         if (stopped := stop(run, k)) is not None:
             yield _standing(run, k, *stopped)
