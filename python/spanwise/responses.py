@@ -121,7 +121,11 @@ class Responses:
 
     @property
     def moment(self) -> Array:
-        """Bending moments, sagging positive [N m], shape (time, section)."""
+        """Bending moments, sagging positive [N m], shape (time, section).
+
+        At the steps: the extremes of `Run.envelope` are taken between them too, as axles pass the
+        section, and can be a little larger.
+        """
         return self._histories("moment")
 
     @property
