@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -92,21 +94,37 @@ def test_a_sample_that_is_too_slow_is_marked(advance: float | None) -> None:
     assert (found.digests[[0, 2]] == whole.digests[[0, 2]]).all()
 
 
-def test_no_slower_than_a_loop() -> None:
+def ratios(clock: Callable[[], float], threads: int | None) -> list[float]:
+    """Time of an ensemble of kinds of one sample by that of a loop of crossings, five times."""
     kinds = [truck(i) for i in range(60)]
     given = {**GIVEN, "speed": 20.0, "road": ROAD}
     loop = {key: value for key, value in given.items() if key != "advance"} | {"step": 0.05 / 20.0}
-    ratios = []
+    many = {**given, "samples": 60, "kind": range(60), "own_roads": False, "threads": threads}
+    found = []
     for _ in range(5):
-        started = time.process_time()
+        started = clock()
         for each in kinds:
             sw.cross(BRIDGE, each, **loop)
-        crossed = time.process_time() - started
-        started = time.process_time()
-        sw.ensemble(BRIDGE, kinds, samples=60, kind=range(60), threads=1, own_roads=False, **given)
-        ratios.append((time.process_time() - started) / crossed)
-    # Fourteen when tables were laid out for each; now 0.7 to 0.95, but times vary by more.
-    assert min(ratios) < 1.5, ratios
+        crossed = clock() - started
+        started = clock()
+        sw.ensemble(BRIDGE, kinds, **many)
+        found.append((clock() - started) / crossed)
+    return found
+
+
+@pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="needs two processors")
+def test_no_slower_than_a_loop_on_all_processors() -> None:
+    found = ratios(time.perf_counter, None)
+    assert min(found) < 1.0, found
+
+
+def test_about_as_much_work_as_a_loop() -> None:
+    """A guard against laying out tables for each kind, fourteen times the work of a loop.
+
+    On one thread it is 1.02 to 1.14 times: not yet none more.
+    """
+    found = ratios(time.process_time, 1)
+    assert min(found) < 1.4, found
 
 
 MEASURE = """
