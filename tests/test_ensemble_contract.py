@@ -99,9 +99,6 @@ def test_progress() -> None:
     started = time.perf_counter()
     sw.ensemble(BRIDGE, TRUCK, samples=5000, progress=lambda *now: told.append(now), **GIVEN)
     assert len(told) <= (time.perf_counter() - started) / 0.1 + 1
-    told.clear()
-    sw.ensemble(BRIDGE, TRUCK, samples=0, progress=lambda *now: told.append(now), **GIVEN)
-    assert told == [(0, 0)]
 
 
 def test_what_the_listener_raises_ends_the_work() -> None:
@@ -169,7 +166,7 @@ def test_interrupt_while_the_bridge_is_prepared() -> None:
         threading.Timer(0.3, send).start()
         try:
             while True:
-                sw.ensemble(bridge, sw.vehicles.kishan_1973(), samples=0, speed=20.0, modes=3,
+                sw.ensemble(bridge, sw.vehicles.kishan_1973(), samples=1, speed=20.0, modes=3,
                             damping=0.0,
                             sections=np.linspace(0.0, 159.0 + np.random.rand(), 900))
         except KeyboardInterrupt:

@@ -19,10 +19,10 @@ PASSAGE = sw.Passage(vehicle=TRUCK)
 LEFT = sw.Passage(vehicle=TRUCK, direction="left")
 
 REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
-    (TRUCK, {"samples": -1}, ValueError, "samples = -1: must not be negative"),
+    (TRUCK, {"samples": -1}, ValueError, "samples = -1: must be from 1 to 4294967295"),
     (TRUCK, {"samples": 2.5}, ValueError, "samples = 2.5: must be a whole number"),
     (TRUCK, {"samples": 10**8}, ValueError, "samples = 100000000: results would take"),
-    (TRUCK, {"samples": 2**32}, ValueError, "samples = 4294967296: must be at most 4294967295"),
+    (TRUCK, {"samples": 2**32}, ValueError, "samples = 4294967296: must be from 1 to 4294967295"),
     (TRUCK, {"seed": -1}, ValueError, "seed = -1: must not be negative"),
     (TRUCK, {"first": 1.5}, ValueError, "first = 1.5: must be a whole number"),
     (TRUCK, {"speed": None}, ValueError, "speed: missing"),

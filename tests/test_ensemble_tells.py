@@ -147,8 +147,6 @@ def test_nothing_is_random() -> None:
     )
     for varied in several:
         assert said not in ensemble(**{"samples": 3, **varied}).summary()
-    empty: dict[str, Any] = {"samples": 0, "speed": [], "factors": {"body_mass": []}}
-    assert "0 samples" in ensemble(**empty).summary()
 
 
 def test_the_step(rough: sw.Ensemble) -> None:

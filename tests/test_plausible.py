@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -12,6 +14,7 @@ import pytest
 
 import spanwise as sw
 from spanwise import _plausible
+from spanwise._ensemblefile import as_dict
 from spanwise.cli import main
 
 EI, MASS = 4e9, 9e3
@@ -49,7 +52,7 @@ def cross(of: sw.Bridge, vehicle: Any, speed: float | None = 20.0, **given: Any)
     return sw.cross(of, vehicle, speed=speed, **{"modes": 2, "damping": 0.01, **given})
 
 
-def ensemble(of: sw.Bridge, vehicle: Any, speed: float | None = 20.0, **given: Any) -> object:
+def ensemble(of: sw.Bridge, vehicle: Any, speed: Any = 20.0, **given: Any) -> object:
     options = {"samples": 2, "modes": 2, "damping": 0.01, **given}
     return sw.ensemble(of, vehicle, speed=speed, **options)
 
@@ -251,7 +254,6 @@ def test_what_varies_within_reason_is_not_doubted() -> None:
     spread = np.array([0.03, 1.0, 10.0])
     factors = {"body_mass": spread, "suspension_stiffness": spread, "tyre_stiffness": spread}
     ensemble(bridge(), car(), samples=3, factors=factors)
-    ensemble(bridge(), car(), samples=0, factors={"body_mass": np.zeros(0)})
     # What is no vehicle is among the failures, not in the way.
     one = {"body_mass": [1.0, 1e305]}
     with warnings.catch_warnings():
@@ -304,3 +306,93 @@ def test_on_the_command_line(tmp_path: Any, capsys: pytest.CaptureFixture[str]) 
         err = capsys.readouterr().err
         assert err.startswith("spanwise: warning: speed = 80: m/s, which is 288 km/h")
         assert err.count("\n") == 1
+
+
+def test_kinds_of_vehicles_have_their_speeds() -> None:
+    """A lorry of any kind is doubted above 45 m/s, a car above 60, what runs on rails above 120."""
+    light = car(mass=1.5e3, pitch_inertia=2e3, tyre=4e5, suspension=5e4)
+    coach = forces(*[1.3e5] * 4, spacing=6.0)
+    for fine in ((car(), 44.0), (light, 58.0), (coach, 83.0), (forces(1e5, *[2e4] * 9), 44.0)):
+        cross(bridge(EI=4e10, mass=9e3), *fine)
+    for slip in (
+        *(
+            (preset(), 50.0)
+            for name, preset in sw.vehicles.PRESETS.items()
+            if name != "quarter-car"
+        ),
+        (light, 65.0),
+        (forces(1e5, *[2e4] * 9, spacing=2.0), 70.0),
+        (coach, 130.0),
+    ):
+        with pytest.warns(sw.PlausibilityWarning, match=f"^speed = {slip[1]:g}: "):
+            cross(bridge(EI=4e10, mass=9e3), *slip)
+
+
+def test_the_speeds_of_a_kind_are_its_own() -> None:
+    """A train beside lorries does not make these too fast, in any kind and order."""
+    train = [sw.Passage(vehicle=forces(*[1.3e5] * 12), speed=90.0)]
+    lorry = [sw.Passage(vehicle=sw.vehicles.half_car())]
+    kinds = [train, lorry]
+    ensemble(bridge(EI=4e10), kinds, speed=20.0, kind=[0, 1])
+    with pytest.warns(sw.PlausibilityWarning, match="^speed = 90: "):
+        ensemble(bridge(EI=4e10), kinds, speed=np.array([20.0, 90.0]), kind=[0, 1])
+    doubted = np.array([[20.0, 20.0], [20.0, 72.0]])
+    two = [sw.Passage(vehicle=sw.vehicles.half_car(), direction=way) for way in ("right", "left")]
+    with pytest.warns(sw.PlausibilityWarning, match="^speed = 72: "):
+        ensemble(bridge(EI=4e10), two, speed=doubted)
+
+
+def test_what_was_warned_of_stays_with_the_results(tmp_path: Path) -> None:
+    at = np.arange(-130.0, 170.0, 0.25)
+    with pytest.warns(sw.PlausibilityWarning, match="drop-out"):
+        measured = sw.Profile(at, np.where(at == -129.0, -9.999, ROAD.elevation(at)))
+    brakes = sw.Braking(deceleration=1.0, start=500.0)
+    given: dict[str, Any] = {"road": measured, "drive": brakes, "lift_off": False}
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        run = cross(bridge(), car(mass=16.0, pitch_inertia=40.0), 80.0, **given)
+        many = ensemble(bridge(), car(), 80.0, factors={"tyre_damping": 2.0})
+    assert isinstance(run, sw.Run)
+    assert isinstance(many, sw.Ensemble)
+    file = tmp_path / "many.npz"
+    many.to_npz(file)
+    assert run.warnings[0].startswith("road: elevations[4] = -9.999: ")
+    assert [*run.warnings[1:], *many.warnings] == [str(each.message) for each in told]
+    assert {each.partition(":")[0] for each in run.warnings} >= {"road", "loads", "speed = 80"}
+    assert any("the brakes never come on" in each for each in run.warnings)
+    assert any(each.startswith("tyre_damping: ") for each in many.warnings)
+    assert run.to_dict()["warnings"] == [*run.warnings]
+    assert as_dict(many)["warnings"] == [*many.warnings]
+    assert sw.Ensemble.read(file).warnings == many.warnings
+    for each in (run, many):
+        text = " ".join(line[10:] for line in each.summary().split("\n"))
+        assert each.warnings
+        assert all(said in text for said in each.warnings)
+    with pytest.warns(sw.PlausibilityWarning, match="drop-out"):
+        assert pickle.loads(pickle.dumps(run)).warnings == run.warnings
+
+
+def warned_here(call: Callable[[], object]) -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        call()
+    assert told
+    assert {each.filename for each in told} == {__file__}
+
+
+def test_warnings_point_to_the_line_of_the_caller(tmp_path: Path) -> None:
+    file = tmp_path / "p.csv"
+    np.savetxt(file, np.column_stack(points(scale=1e3)), delimiter=",")
+    warned_here(lambda: sw.Profile.read(file))
+    warned_here(lambda: sw.Profile(*points(scale=1e2)))
+    warned_here(lambda: profile(0.5) * 1e3)
+    warned_here(lambda: sw.roads.from_table({"kind": "profile", "file": str(file)}))
+    warned_here(lambda: profile(0.5).iri(0.0, 100.0))
+    case = sw.Case(bridge(), (sw.Passage(vehicle=car()),), {"speed": 80.0, "modes": 2})
+    warned_here(case.run)
+    warned_here(lambda: case.ensemble(samples=2))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        many = case.ensemble(samples=2)
+    warned_here(lambda: many.run(0))
+    warned_here(lambda: sw.cross(bridge(), car(), speed=20.0))

@@ -7,7 +7,7 @@ from typing import Any, Final, get_args
 
 from numpy.typing import ArrayLike
 
-from spanwise._checks import count, flag, named, number, shown
+from spanwise._checks import count, flag, named, number, shown, whole_from
 from spanwise._conditions import Conditions, Recovery
 from spanwise._events import (
     Speeds,
@@ -67,9 +67,8 @@ def recipe_of(
         raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     events = events_of(vehicle)
     surface = surface_of(road)
-    samples, seed, first = count("samples", samples), count("seed", seed), count("first", first)
-    if samples > MOST_SAMPLES:
-        raise ValueError(f"samples = {samples}: must be at most {MOST_SAMPLES}")
+    samples = whole_from("samples", samples, 1, MOST_SAMPLES)
+    seed, first = count("seed", seed), count("first", first)
     advance = None if advance is None else number("advance", advance)
     driven = drive_of(drive)
     own_roads = flag("own_roads", own_roads)
@@ -95,7 +94,6 @@ def recipe_of(
         gravity=gravity,
         lift_off=lift_off,
         mask=mask,
-        stacklevel=4,
     )
     refuse_overdamped(varied, conditions.core["damping"], first)
     looked_at = _quantities(bridge, quantities)

@@ -159,7 +159,7 @@ def _speeds(parts: Sequence[Speeds], counts: Sequence[int]) -> Speeds:
 
 def _width(speeds: Speeds, samples: int) -> int:
     """Speeds of a sample."""
-    return max(1, len(speeds.column) // samples) if samples and len(speeds.column) > 1 else 1
+    return len(speeds.column) // samples if len(speeds.column) > 1 else 1
 
 
 def _column(parts: Sequence[Array], counts: Sequence[int]) -> Array:

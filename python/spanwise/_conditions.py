@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
@@ -11,7 +10,7 @@ import numpy as np
 
 from spanwise._checks import count, flag, is_list, items, number, numbers, word
 from spanwise._value import Value
-from spanwise._warnings import DampingWarning
+from spanwise._warnings import DampingWarning, warn
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, plain_damping, resolved
 
@@ -69,19 +68,15 @@ class Conditions(Value):
         gravity: float,
         lift_off: bool,
         mask: float,
-        stacklevel: int = 3,
     ) -> Conditions:
-        """Arguments of `cross` of the same names; `uneven` tells whether any road is.
-
-        Warnings name the line so many calls up.
-        """
+        """Arguments of `cross` of the same names; `uneven` tells whether any road is."""
         if approach is None:
             approach = APPROACH if uneven else 0.0
         if ramp is None:
             ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
         modes = count("modes", bridge.default_modes() if modes is None else modes)
         if damping is None:
-            warnings.warn(UNDAMPED, DampingWarning, stacklevel=stacklevel)
+            warn(UNDAMPED, DampingWarning)
             damping = 0.0
         if not isinstance(damping, Mapping | np.ndarray) and is_list(damping):
             damping = items("damping", damping)

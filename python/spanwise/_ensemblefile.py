@@ -224,6 +224,7 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
         "sections": ensemble.sections,
         "supports": ensemble.supports,
         "damping": in_words(ensemble.settings["damping"], ensemble.frequencies),
+        "warnings": ensemble.warnings,
         "failures": [
             {"sample": each.sample, "step": each.step, "cause": each.cause}
             for each in ensemble.failures

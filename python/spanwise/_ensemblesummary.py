@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spanwise._events import Event
 from spanwise._recipe import Recipe
-from spanwise._shown import many
+from spanwise._shown import many, warned
 from spanwise._variation import Factors
 from spanwise.columns import ROUNDING, SampleExtremes, Sense
 from spanwise.damping import in_words
@@ -117,6 +117,7 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
         f"{ensemble.threads} thread{'s' if ensemble.threads > 1 else ''}, {ensemble.isa}"
     )
     yield f"hash      {ensemble.hash}"
+    yield from warned(ensemble.warnings)
 
 
 def _tail(ensemble: Ensemble) -> Iterator[str]:
@@ -195,7 +196,7 @@ def _alike(recipe: Recipe) -> bool:
 
 def _step(ensemble: Ensemble) -> str:
     rows, column = ensemble._rows, ensemble._recipe.front_speeds
-    if ensemble.samples > 0 and rows.step(0, float(column[0])) is not None:
+    if rows.step(0, float(column[0])) is not None:
         # All samples of a march take steps of one way: the fastest has the shortest of them.
         marches = rows.marches
         speeds = np.broadcast_to(column, len(marches))

@@ -116,7 +116,7 @@ def _governing(ensemble: Ensemble) -> dict[Factor, tuple[int, float]]:
     """By impact factor, which section, support or axle governs, and where that is."""
     found: dict[Factor, tuple[int, float]] = {}
     for name, (quantity, sense) in FACTORS.items():
-        if ensemble._looks_at(quantity) and ensemble.samples > 0:
+        if ensemble._looks_at(quantity):
             extremes: SampleExtremes = ensemble.envelope(quantity)
             where = governing(*by_sense(extremes, sense))
             found[name] = where, float(extremes.x[where])

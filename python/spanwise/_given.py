@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from spanwise._checks import array, shown
 from spanwise._keys import suggestion
-from spanwise._warnings import PlausibilityWarning
+from spanwise._warnings import PlausibilityWarning, warn
 
 Array: TypeAlias = NDArray[np.float64]
 Sides: TypeAlias = tuple[Array, Array | None]
@@ -125,12 +124,11 @@ def check_flexibility(
     if len(frequencies) > 1 and free.any():
         part = float((modal[free] / own[free]).max())
         if part < _LITTLE:
-            warnings.warn(
+            warn(
                 f"frequencies: the modes explain at most {100.0 * part:.2g} % of the deflection "
                 "under a load at any section; are they in rad/s instead of Hz, the shapes not "
                 "scaled to unit modal mass [kg^-1/2], or the modes too few?",
                 PlausibilityWarning,
-                stacklevel=3,
             )
 
 

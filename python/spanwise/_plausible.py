@@ -7,7 +7,6 @@ times as wide as what is published, so that footbridges, models in laboratories 
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
@@ -16,7 +15,6 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._warnings import PlausibilityWarning
 from spanwise.bridge import Bridge
 from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.traffic import Drive, Passage, Speeds
@@ -40,9 +38,12 @@ _DEFLECTED: Final = 1.0 / 20.0
 #: laboratory [kg].
 _LIGHT, _FULL_SIZE = 275.0, 5e3
 
-#: Speeds that cars and trains do not reach [m/s], and what tells trains: the stiffness of a wheel
-#: on a rail [N/m], the length of a train of forces [m].
-_ROAD_SPEED, _RAIL_SPEED, _ON_RAILS, _LONG = 60.0, 120.0, 5e7, 15.0
+#: Speeds that lorries, cars and trains do not reach [m/s], and the axle load of a lorry [N].
+_LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _HEAVY = 45.0, 60.0, 120.0, 25e3
+
+#: What tells trains: the stiffness of a wheel on a rail [N/m]; the length of forces or masses in a
+#: row [m], which no lorry has, or none with axles loaded alike, as those of a coach are.
+_ON_RAILS, _LONG, _LONG_ALIKE, _ALIKE = 5e7, 30.0, 15.0, 0.5
 
 #: How far springs may give way under the weight that they carry [m]: then it bounces at 0.5 Hz.
 _SAG: Final = 1.0
@@ -52,7 +53,7 @@ _SAG: Final = 1.0
 _FELT, _FINE = 10.0, 0.5
 
 
-def doubt(
+def doubts(
     bridge: Bridge,
     first_frequency: float,
     events: Iterable[Event],
@@ -63,8 +64,8 @@ def doubt(
     gravity: float,
     step: float | None,
     advance: float | None = None,
-) -> None:
-    """Warn the caller's caller of what a crossing, or the events of an ensemble, hardly mean."""
+) -> tuple[str, ...]:
+    """Sentences to say of what a crossing, or the events of an ensemble, hardly mean."""
     span = _longest_span(bridge)
     moving = float(bridge.masses.sum()) * span / bridge.length
     found = list(_frequency(bridge, span, first_frequency))
@@ -85,8 +86,16 @@ def doubt(
             if key not in seen and (said := check()) is not None:
                 seen.add(key)
                 found.append(said)
-    for said in found:
-        warnings.warn(said, PlausibilityWarning, stacklevel=3)
+    return tuple(found)
+
+
+def doubts_of_roads(roads: Iterable[Road]) -> tuple[str, ...]:
+    """What was said of measured roads as they were made."""
+    parts = [part for road in roads for part in (road.parts if isinstance(road, Sum) else (road,))]
+    found = (
+        f"road: {each}" for part in parts if isinstance(part, Profile) for each in part._doubts
+    )
+    return tuple(dict.fromkeys(found))
 
 
 def _longest_span(bridge: Bridge) -> float:
@@ -189,13 +198,16 @@ def _springs(passage: Passage, gravity: float) -> str | None:
 def _speed(passage: Passage, speed: float) -> str | None:
     """Of a vehicle: speed in km/h. That of a single axle is left to theory."""
     truck = passage.vehicle
-    if speed <= _ROAD_SPEED or len(truck.axle_positions) == 1:
+    if speed <= _LORRY_SPEED or len(truck.axle_positions) == 1:
         return None
+    loads = truck.static_loads()
     if isinstance(truck, Vehicle):
         rails = all(axle.tyre_stiffness >= _ON_RAILS for axle in truck.axles)
     else:
-        rails = truck.wheelbase >= _LONG
-    if speed <= (_RAIL_SPEED if rails else _ROAD_SPEED):
+        alike = loads.min() >= _ALIKE * loads.max()
+        rails = truck.wheelbase >= (_LONG_ALIKE if alike else _LONG)
+    on_road = _LORRY_SPEED if loads.max() > _HEAVY else _CAR_SPEED
+    if speed <= (_RAIL_SPEED if rails else on_road):
         return None
     return (
         f"speed = {speed:g}: m/s, which is {3.6 * speed:.0f} km/h; if {speed:g} km/h are meant, "

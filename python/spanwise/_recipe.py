@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._conditions import Conditions
-from spanwise._events import Event, Speeds, core_passage
+from spanwise._events import Event, Speeds, core_passage, is_simple
+from spanwise._plausible import doubts
 from spanwise._rows import Rows
 from spanwise._value import Value
-from spanwise._variation import Factors
+from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.roads import ISO8608, Road
@@ -143,10 +144,55 @@ class Recipe(Value):
             _scaled(passage.vehicle, *each) for passage, each in zip(event, varied, strict=True)
         ]
 
-    def varied_most(self) -> Iterator[Event]:
-        """Events with the smallest and the largest of each factor on masses and springs."""
-        if self.samples == 0:
-            return
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences to say of what is hardly meant."""
+        simple = all(is_simple(event, self.drive) for event in self.events)
+        return doubts(
+            self.bridge,
+            self.bridge.modes(self.conditions.modes).frequencies[0],
+            self._extreme_events(),
+            speed=None,
+            drive=self.drive,
+            road=self.settings["road"],
+            gravity=self.conditions.core["gravity"],
+            # Side by side they take no longer ways than by default, whatever the step is.
+            step=None if simple else self.conditions.core["step"],
+            advance=self.advance if simple else None,
+        )
+
+    def idle(self) -> list[str]:
+        """Sentences to say of factors on nothing."""
+        return [*idle(self.factors, self.events, self.conditions.core)]
+
+    @property
+    def roads(self) -> list[Road]:
+        """All roads that are driven on."""
+        own = (each.road for event in self.events for each in event)
+        return [self.settings["road"], *(each for each in own if each is not None)]
+
+    def _extreme_events(self) -> Iterator[Event]:
+        """Events, and those with the smallest and the largest of each factor on masses and springs.
+
+        Each vehicle at the highest of its speeds at the start.
+        """
+        column = self.speeds.column
+        speeds = column.reshape(1 if len(column) == 1 else self.samples, -1)
+        if len(self.events) == 1:
+            most = speeds.max(axis=0, keepdims=True)
+        else:
+            most = np.zeros((len(self.events), speeds.shape[1]))
+            np.maximum.at(most, self.kinds, speeds)
+
+        def fastest(kind: int, event: Event) -> Event:
+            found = np.broadcast_to(most[kind], len(event)).tolist()
+            pairs = zip(event, found, strict=True)
+            return tuple(
+                replace(each, speed=speed) if each.speed is None and speed > 0.0 else each
+                for each, speed in pairs
+            )
+
+        for kind, event in enumerate(self.events):
+            yield fastest(kind, event)
         rows = set()
         for each in self.factors:
             if each.name in SHARED_OUT:
@@ -156,7 +202,8 @@ class Recipe(Value):
             # What cannot be made of factors is among the failures.
             with suppress(ValueError):
                 pairs = zip(self.event(row), self.vehicles(row), strict=True)
-                yield tuple(replace(passage, vehicle=vehicle) for passage, vehicle in pairs)
+                varied = tuple(replace(passage, vehicle=vehicle) for passage, vehicle in pairs)
+                yield fastest(int(self.kinds[row]) if len(self.kinds) else 0, varied)
 
     def run(self, sample: int, rows: Rows, tail: float | None = None) -> Run:
         """The sample by a crossing of its own, with this tail [s] if that was not given."""

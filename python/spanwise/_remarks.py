@@ -11,7 +11,16 @@ if TYPE_CHECKING:
     from spanwise.runs import Run
 
 
-def remarks(run: Run, vehicle: int) -> list[str]:
+def remarks(run: Run) -> list[str]:
+    """Of all vehicles, by number where there are several."""
+    return [
+        said if len(run.passages) == 1 else f"vehicles[{k}]: {said}"
+        for k in range(len(run.passages))
+        for said in _remarks(run, k)
+    ]
+
+
+def _remarks(run: Run, vehicle: int) -> list[str]:
     """Of a vehicle, counted from 0."""
     passage = run.passages[vehicle]
     drive = drive_of(run.settings["drive"]) if passage.drive is None else passage.drive

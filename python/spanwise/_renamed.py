@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
+from spanwise._warnings import warn
 
 
 def renamed(old: str, new: str) -> None:
-    """Warn whoever called what calls this."""
-    warnings.warn(
-        f"{old} is now {new}; the old name goes with the next version",
-        DeprecationWarning,
-        stacklevel=3,
-    )
+    """Warn whoever used the old one."""
+    warn(f"{old} is now {new}; the old name goes with the next version", DeprecationWarning)

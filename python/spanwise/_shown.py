@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import reprlib
 import sys
+import textwrap
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import Any, Final
 
@@ -39,6 +41,14 @@ class _Short(reprlib.Repr):
 def many(number: int, what: str) -> str:
     """A number of things in words."""
     return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def warned(sentences: Iterable[str]) -> Iterator[str]:
+    """Lines of a summary that tell what was warned of."""
+    for said in sentences:
+        first, *more = textwrap.wrap(said, 90, break_long_words=False)
+        yield f"warning   {first}"
+        yield from (f"          {line}" for line in more)
 
 
 def shown(value: object) -> str:

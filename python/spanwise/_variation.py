@@ -228,9 +228,7 @@ def _columns(key: str, name: str, given: object, samples: int) -> Array:
             f"{key}[{name!r}] = shape {values.shape}: must be a number, or of shape ({samples},) "
             f"or ({samples}, parts), one row for each of the {samples} samples"
         )
-    return (
-        values.reshape(samples, -1) if samples else values.reshape(0, max(1, *values.shape[1:], 1))
-    )
+    return values.reshape(samples, -1)
 
 
 def _relative(

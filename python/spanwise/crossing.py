@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from typing import TypeAlias
+
+import numpy as np
 
 from spanwise import _core
 from spanwise._checks import number, shown
 from spanwise._computed import Computed
 from spanwise._conditions import Conditions, Recovery
-from spanwise._plausible import doubt
+from spanwise._plausible import doubts
 from spanwise._remarks import remarks
+from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping
@@ -187,10 +189,9 @@ def cross(
         "step": core.step,
     }
     computed = Computed(bridge, passages, conditions.core, core)
-    run = Run(bridge, passages, surface, settings, computed)
-    doubt(
+    doubted = doubts(
         bridge,
-        run.frequencies[0],
+        core.omega[0] / (2.0 * np.pi),
         [passages],
         speed=speed,
         drive=driven,
@@ -198,10 +199,11 @@ def cross(
         gravity=conditions.core["gravity"],
         step=conditions.core["step"],
     )
-    for k in range(len(passages)):
-        for remark in remarks(run, k):
-            whose = "" if len(passages) == 1 else f"vehicles[{k}]: "
-            warnings.warn(f"{whose}{remark}", UserWarning, stacklevel=2)
+    run = Run(bridge, passages, surface, settings, computed, doubted)
+    for doubt in doubted:
+        warn(doubt, PlausibilityWarning)
+    for remark in remarks(run):
+        warn(remark)
     return run
 
 

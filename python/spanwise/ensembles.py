@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
@@ -14,11 +13,10 @@ from spanwise._asked import recipe_of
 from spanwise._checks import count, shown
 from spanwise._conditions import Recovery
 from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
-from spanwise._plausible import doubt
 from spanwise._progress import Bar
 from spanwise._recipe import Quantity, cores
 from spanwise._rows import Rows
-from spanwise._variation import idle
+from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping
@@ -76,7 +74,7 @@ def ensemble(
         Or kinds of event, of which sample i is number ``kind[i]``: a list of vehicles, or a list of
         lists of `Passage`.
     samples : int
-        How many.
+        How many, at least 1.
     seed : int, optional
         Seed of the random roads.
     first : int, optional
@@ -200,21 +198,11 @@ def ensemble(
         mask=mask,
     )
     conditions, events = recipe.conditions, recipe.events
-    for remark in idle(recipe.factors, events, conditions.core):
-        warnings.warn(remark, UserWarning, stacklevel=2)
+    for remark in recipe.idle():
+        warn(remark)
+    for doubt in recipe.doubts():
+        warn(doubt, PlausibilityWarning)
     simple = all(is_simple(event, recipe.drive) for event in events)
-    doubt(
-        bridge,
-        bridge.modes(conditions.modes).frequencies[0],
-        [*events, *recipe.varied_most()],
-        speed=float(speeds.column.max(initial=0.0)),
-        drive=recipe.drive,
-        road=recipe.settings["road"],
-        gravity=conditions.core["gravity"],
-        # Side by side they take no longer ways than by default, whatever the step is.
-        step=None if simple else conditions.core["step"],
-        advance=recipe.advance if simple else None,
-    )
     column = speeds
     if simple:
         column = speeds_by_kind(speeds, events, recipe.kinds, recipe.samples)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from spanwise._asked import all_quantities
 from spanwise._checks import file_path, is_list, items, named, shown, whole
 from spanwise._conditions import masked
+from spanwise._plausible import doubts_of_roads
 from spanwise._recipe import Recipe
 from spanwise._renamed import renamed
 from spanwise._rows import Rows
@@ -85,6 +86,8 @@ class Ensemble:
         Threads at most.
     elapsed : float
         Time that it took [s].
+    warnings : tuple of str
+        All that was warned of in these crossings and their measured roads, but damping.
     shares_geometry : bool
         Whether the samples were marched side by side; if not, each was a crossing of its own, which
         takes about ten times as long.
@@ -137,6 +140,12 @@ class Ensemble:
         from spanwise._ensemblefile import read_npz
 
         return read_npz(file_path("path", path))
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """All that was warned of in these crossings and their measured roads, but damping."""
+        recipe = self._recipe
+        return (*doubts_of_roads(recipe.roads), *recipe.idle(), *recipe.doubts())
 
     @property
     def rate(self) -> float:

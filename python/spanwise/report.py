@@ -44,6 +44,7 @@ def as_dict(run: Run) -> dict[str, Any]:
         "supports": run.supports,
         "frequencies": run.frequencies,
         "damping": in_words(run.settings["damping"], run.frequencies),
+        "warnings": run.warnings,
         "final_speed": run.final_speed,
         "vehicles": [_vehicle(run, k) for k in range(len(run.passages))],
         "lift_offs": [asdict(each) for each in run.lift_offs],

@@ -15,6 +15,8 @@ from spanwise._checks import choice, named
 from spanwise._computed import Computed
 from spanwise._conditions import masked
 from spanwise._freevibration import Growth, growths
+from spanwise._plausible import doubts_of_roads
+from spanwise._remarks import remarks
 from spanwise._value import frozen, same
 from spanwise.bridge import Bridge
 from spanwise.motions import BodyMotion, LiftOff, ModalMotion, Motion, OffRoad, VehicleMotion
@@ -80,6 +82,8 @@ class Run(Responses):
         Numbers of vehicle and axle, from 1, of each column by axle.
     steps : int
         Number of time steps.
+    warnings : tuple of str
+        All that was warned of in this crossing and its measured roads, but damping.
     """
 
     def __init__(
@@ -89,8 +93,10 @@ class Run(Responses):
         road: Road,
         settings: dict[str, object],
         computed: Computed,
+        doubts: tuple[str, ...] = (),
     ) -> None:
         super().__init__(computed)
+        self._doubts = doubts
         self.static = Responses(computed, static=True)
         core = computed.core
         self.bridge, self.passages, self.road, self.settings = bridge, passages, road, settings
@@ -125,6 +131,12 @@ class Run(Responses):
     @property
     def _core(self) -> _core.Crossing:
         return self._computed.core
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """All that was warned of in this crossing and its measured roads, but damping."""
+        roads = (self.road, *(each.road for each in self.passages if each.road is not None))
+        return (*doubts_of_roads(roads), *self._doubts, *remarks(self))
 
     @property
     def axles(self) -> list[tuple[int, int]]:
@@ -312,8 +324,8 @@ class Run(Responses):
         Keys: ``version``; ``sections``, ``supports`` [m], ``frequencies`` [Hz]; for each quantity
         the lists ``max``, ``min``, ``static_max``, ``static_min``, each with its ``..._time`` [s],
         ``..._position`` [m] and ``..._partner`` (see `Extremes`); ``impact_factors``;
-        ``final_speed`` of the first vehicle [m/s]; ``vehicles``, for each its static axle loads
-        [N], ``load_coefficients`` (by axle), ``final_speed``, ``stopped`` (time [s] and
+        ``warnings``; ``final_speed`` of the first vehicle [m/s]; ``vehicles``, for each its static
+        axle loads [N], ``load_coefficients`` (by axle), ``final_speed``, ``stopped`` (time [s] and
         ``axle_positions`` [m], or None) and ``off_road`` (by axle); ``lift_offs``; ``steps``;
         ``tail``, its ``length`` [s], whether it ``settled`` and what ``can_grow`` after it (see
         `can_grow`); ``settings``, the tables of a case that computes the run again:

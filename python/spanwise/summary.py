@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._freevibration import growth_in_words, tail_in_words
-from spanwise._remarks import remarks
+from spanwise._shown import warned
 from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
@@ -69,6 +69,7 @@ def _description(run: Run) -> Iterator[str]:
             yield _standing(run, k, *stopped)
     yield from _varying(run)
     yield from _off_road(run)
+    yield from warned(run.warnings)
 
 
 def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
@@ -95,8 +96,6 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
         lane = f"in lane {passage.lane_number}"
         way[:0] = [f"to the {passage.direction} {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
-    for remark in remarks(run, number):
-        yield f"          {remark}"
     if passage.road is not None:
         yield f"          on a road of its own: {road_in_words(passage.road)}"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise._value import Brief
-from spanwise._warnings import PlausibilityWarning
+from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads import roughness
 from spanwise.roads.roughness import IriSegments
 
@@ -237,7 +236,7 @@ class Road(Brief):
             found = IriSegments(edges[:-1], edges[1:], 1e3 * values, lead_in)
         doubt = roughness.doubt_of_index(self._spacing_on(start, end))
         if doubt is not None:
-            warnings.warn(doubt, PlausibilityWarning, stacklevel=2)
+            warn(doubt, PlausibilityWarning)
         return found
 
     def _spacing_on(self, start: float, end: float) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from spanwise import _core
 from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
 from spanwise._renamed import renamed
-from spanwise._warnings import PlausibilityWarning
+from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads._doubts import doubts
 from spanwise.roads._options import called, given
 from spanwise.roads.base import CONTACT_PATCH, Road
@@ -96,8 +95,13 @@ class Profile(Road):
             max_gap=None if max_gap is None else number("max_gap", max_gap),
         )
         self.__post_init__()
-        for doubt in doubts(self.x, self.elevations):
-            warnings.warn(doubt, PlausibilityWarning, stacklevel=2)
+        for doubt in self._doubts:
+            warn(doubt, PlausibilityWarning)
+
+    @cached_property
+    def _doubts(self) -> tuple[str, ...]:
+        """What was warned of."""
+        return tuple(doubts(self.x, self.elevations))
 
     @cached_property
     def spacing(self) -> float:
