@@ -8,8 +8,8 @@ use crate::error::{Error, finite, not_negative, positive};
 use crate::motion::{Motion, reasonable};
 use crate::newmark::Coordinate;
 use crate::path::{ModeShapes, Pavement};
-use crate::road::Road;
 use crate::road::datum::Datum;
+use crate::road::{Road, down_to_mm};
 use crate::settings::Settings;
 use crate::vehicle::Vehicle;
 
@@ -245,13 +245,18 @@ impl<'a> Course<'a> {
         }
         let [from, to] = self.paved(settings, length);
         let [first, last] = self.road.ends();
-        let (covered, begins) = match self.direction {
-            Direction::Right => (self.road.check_covers(from, to), first <= from),
-            Direction::Left => (self.road.check_covers(length - to, length - from), length - from <= last),
+        // How much of it there is before the bridge and behind it, as the vehicle comes.
+        let (covered, before, behind) = match self.direction {
+            Direction::Right => (self.road.check_covers(from, to), -first, last - length),
+            Direction::Left => (self.road.check_covers(length - to, length - from), last - length, -first),
         };
-        // Without an approach the road is too short for the vehicle itself.
-        let helps = !begins && settings.approach > 0.0;
-        covered.map_err(|error| if helps { error.advising(", or shorten the approach") } else { error })
+        let longest = if settings.ramp > 0.0 && before > 0.0 { before } else { before - self.wheelbase() };
+        // Without an approach, or behind the bridge, the road is too short for the vehicle itself.
+        let helps = before < -from && behind >= to - length && (0.0..settings.approach).contains(&longest);
+        covered.map_err(|error| match helps {
+            true => error.advising(&format!(", or approach = {} at most", down_to_mm(longest))),
+            false => error,
+        })
     }
 
     /// From where to where the road counts under its axles, from the end at which it enters [m].

@@ -29,6 +29,11 @@ use random::Random;
 /// Part of the highest wave number of samples, half a wave each, up to which they are taken at their word.
 const OF_NYQUIST: f64 = 0.8;
 
+/// A place, or a millimetre before it at most, in digits that one can write [m].
+pub fn down_to_mm(x: f64) -> f64 {
+    (1e3 * x).floor() / 1e3
+}
+
 /// Elevation, slope and curvature at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -214,7 +219,12 @@ impl Road {
 
     /// Refuses a path from `from` to `to` [m] on which the road is not known everywhere, or repeats.
     pub fn check_covers(&self, from: f64, to: f64) -> Result<(), Error> {
-        self.check_holds(from, to).map_err(|error| error.advising("; give a longer road"))?;
+        self.check_holds(from, to).map_err(|error| {
+            let ([first, last], start) = (self.ends(), down_to_mm(from));
+            let long_enough = start + (last - first) >= to;
+            let moved = format!(", or move this one: start = {start} where it is read from a file");
+            error.advising("; give a longer road").advising(if long_enough { &moved } else { "" })
+        })?;
         let period = self.period();
         if to - from > period {
             let allowed =

@@ -179,6 +179,45 @@ def test_road(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "--scale: used with profiles only, not with a case" in capsys.readouterr().err
 
 
+def test_the_road_of_a_case_needs_no_more_than_a_road(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "road.toml"
+    file.write_text(ROAD + '[bridge]\nspans = "to come"\n', encoding="utf-8")
+    assert main(["road", str(file)]) == 0
+    assert "road      iso-8608 class C" in capsys.readouterr().out
+    file.write_text(ROAD.replace("road", "raod"), encoding="utf-8")
+    assert main(["road", str(file)]) == 2
+    assert "unknown table or key 'raod' (did you mean 'road'?)" in capsys.readouterr().err
+    file.write_text(ROAD.replace("seed", "sead"), encoding="utf-8")
+    assert main(["road", str(file)]) == 2
+    assert f"{file}, [road]: unknown key 'sead'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "is_profile"),
+    [
+        ("x [m];z [mm]\n" + "".join(f"{k},5;{k}\n" for k in range(20)), True),
+        ("# measured\n" + "".join(f"  {k}.5  0.1\n" for k in range(20)), True),
+        ("ERDFILEV2.00\n   2,   5,  -1,   1,   5,  0.5,  -1,\nEND\n", True),
+        (CASE.replace("speed", "sped"), False),
+        (CASE + "points = [\n1.0,\n2.0\n", False),
+        ("", False),
+    ],
+)
+def test_a_profile_in_place_of_a_case(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, is_profile: bool
+) -> None:
+    file = tmp_path / "p.csv"
+    file.write_text(text, encoding="utf-8")
+    for command in (["cross", str(file)], ["ensemble", str(file), "--samples", "2"]):
+        assert main(command) == 2
+        err = capsys.readouterr().err
+        said = f"{file}: is a measured profile, not a case; in a case it is the road:\n"
+        lines = f'[road]\nkind = "profile"\nfile = "{file}"\n'
+        assert ((said + lines) in err) == is_profile
+
+
 def test_road_by_segments_and_as_json(
     case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

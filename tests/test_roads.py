@@ -489,16 +489,54 @@ def test_points_out_of_order_and_double(tmp_path: Path) -> None:
     assert_allclose(road.elevations, [0.1, 0.2, 0.4, 0.1], rtol=EXACT)
 
 
-def test_a_road_too_short_for_the_path() -> None:
-    bridge = sw.Bridge(spans=[20.1], EI=4e9, mass=8e3)
-    road = sw.Profile(5.1 * np.arange(5), np.zeros(5) + 1e-3 * np.arange(5) ** 2)
-    with pytest.raises(ValueError, match=r"to 20\.4 m; give a longer road, or shorten the app"):
-        sw.cross(bridge, QUARTER, speed=20.0, road=road, damping=0.0)
+#: Ends of a road for a bridge of 20.1 m [m], the approach, what is given, and what cures it.
+TOO_SHORT: list[tuple[tuple[float, float, float], dict[str, Any], str]] = [
+    ((0.0, 20.4, 100.0), {}, "give a longer road, or approach = 0 at most"),
+    ((-3.0, 20.4, 100.0), {}, "give a longer road, or approach = 3 at most"),
+    ((-3.0, 20.4, 100.0), {"ramp": 0.0}, "give a longer road, or approach = 3 at most"),
+    (
+        (-3.0, 200.0, 100.0),
+        {},
+        "give a longer road, or move this one: start = -100 where it is read from a file, "
+        "or approach = 3 at most",
+    ),
+    (
+        (-100.0, 100.0, 100.0),
+        {"direction": "left"},
+        "give a longer road, or move this one: start = 0 where it is read from a file, "
+        "or approach = 79.9 at most",
+    ),
+    ((-1.0, 25.0, 100.0), {"direction": "left"}, "give a longer road, or approach = 4.899 at most"),
     # Of which there may be none; nor does it help where the road ends too early.
-    for first, last, approach in ((1.0, 30.0, 0.0), (0.0, 19.0, 0.0), (-150.0, 19.0, 100.0)):
-        road = sw.Profile(np.linspace(first, last, 9), 1e-3 * np.arange(9) ** 2)
-        with pytest.raises(ValueError, match=r"the road covers only .*; give a longer road$"):
-            sw.cross(bridge, QUARTER, speed=20.0, road=road, damping=0.0, approach=approach)
+    ((1.0, 20.4, 0.0), {}, "give a longer road"),
+    ((0.0, 19.0, 0.0), {}, "give a longer road"),
+    ((-101.0, 19.0, 100.0), {}, "give a longer road"),
+    ((-50.0, 19.0, 100.0), {}, "give a longer road"),
+]
+
+
+@pytest.mark.parametrize(("road", "given", "cure"), TOO_SHORT)
+def test_a_road_too_short_for_the_path(
+    road: tuple[float, float, float], given: dict[str, Any], cure: str
+) -> None:
+    first, last, approach = road
+    bridge = sw.Bridge(spans=[20.1], EI=4e9, mass=8e3)
+    x = np.linspace(first, last, 9)
+    passage = sw.Passage(vehicle=QUARTER, direction=given.get("direction", "right"))
+    common: dict[str, Any] = {"speed": 20.0, "damping": 0.0, "ramp": given.get("ramp")}
+    common |= {"bridge": bridge, "vehicle": passage}
+
+    def cross(from_: float, approach: float) -> sw.Run:
+        measured = sw.Profile(x - x[0] + from_, 1e-6 * np.arange(9) ** 2)
+        return sw.cross(**common, approach=approach, road=measured)
+
+    with pytest.raises(ValueError, match=rf"the road covers only .*; {re.escape(cure)}$"):
+        cross(first, approach)
+    # What is said to help does.
+    if start := re.search(r"start = (\S+)", cure):
+        cross(float(start[1]), approach)
+    if most := re.search(r"approach = (\S+)", cure):
+        cross(first, float(most[1]))
 
 
 def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from spanwise._files import write_files
 from spanwise._streams import tell
 from spanwise.case import Case
 from spanwise.report import json_lines
-from spanwise.roads import IriSegments, IsoClass, Profile, Road, Smooth
+from spanwise.roads import IriSegments, IsoClass, Profile, Road
 from spanwise.roads._options import written_as
 from spanwise.summary import road_in_words
 
@@ -137,8 +137,7 @@ def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
     if options.file.suffix.lower() == ".toml":
         for key in given:
             raise ValueError(f"{READING[key]}: used with profiles only, not with a case")
-        case = Case.read(options.file)
-        return Smooth() if case.road is None else case.road, case.files
+        return Case.read_road(options.file)
     if "columns" in given:
         given["columns"] = [int(c) if c.isdecimal() else c for c in given["columns"]]
     with written_as(READING):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -22,7 +23,8 @@ from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.ensembles import ensemble
 from spanwise.population import Ensemble
-from spanwise.roads import Road
+from spanwise.roads import Road, Smooth
+from spanwise.roads.sniffing import looks_like_profile
 from spanwise.roads.table import KINDS as ROADS
 from spanwise.runs import Run
 from spanwise.traffic import KINDS as DRIVES
@@ -145,8 +147,36 @@ class Case(Hashed):
             A ValueError: if it is not a case file, or a value in it is not allowed.
         """
         path = file_path("path", path)
-        case = cls.parse(read_text(path), source=str(path), folder=path.parent)
+        try:
+            case = cls.parse(read_text(path), source=str(path), folder=path.parent)
+        except CaseError as error:
+            if looks_like_profile(path):
+                raise CaseError(
+                    f"{path}: is a measured profile, not a case; in a case it is the road:\n"
+                    f'[road]\nkind = "profile"\nfile = {json.dumps(path.as_posix())}'
+                ) from error
+            raise
         return replace(case, files=(path, *case.files))
+
+    @classmethod
+    def read_road(cls, path: str | Path) -> tuple[Road, tuple[Path, ...]]:
+        """The road of a case file, of which nothing else is needed, and the files it is read from.
+
+        Raises
+        ------
+        OSError, CaseError
+            As from `read`.
+        """
+        path = file_path("path", path)
+        tables = parse_toml(read_text(path), str(path))
+        with _errors_in(str(path)):
+            _check_names(tables)
+        road: Road = Smooth()
+        if "road" in tables:
+            with _errors_in(f"{path}, [road]"):
+                road = road_in(tables["road"], path.parent, _home)
+        files = files_in({"road": tables.get("road", ())}, path.parent)
+        return road, (path, *files)
 
     @classmethod
     def parse(cls, text: str, source: str = "case", folder: str | Path = ".") -> Case:
@@ -281,6 +311,18 @@ def _errors_in(place: str) -> Iterator[None]:
 
 
 def _check_tables(tables: Mapping[Any, Any]) -> None:
+    _check_names(tables)
+    if "vehicle" in tables and "traffic" in tables:
+        raise ValueError("[vehicle] and [[traffic]]: give one of the two")
+    missing = [name for name in ("bridge", "vehicle", "crossing") if name not in tables]
+    if "traffic" in tables:
+        missing.remove("vehicle")
+    if missing:
+        needed = "a case has [bridge], [vehicle] or [[traffic]], and [crossing]"
+        raise ValueError(f"missing {_list(missing)}; {needed}")
+
+
+def _check_names(tables: Mapping[Any, Any]) -> None:
     for name, table in tables.items():
         if name not in TABLES:
             hint = (_home(name) if isinstance(name, str) else "") or suggestion(name, TABLES)
@@ -291,14 +333,6 @@ def _check_tables(tables: Mapping[Any, Any]) -> None:
                 raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
         elif not isinstance(table, Mapping) and not (name == "road" and several):
             raise ValueError(f"{name} = {shown(table)}: must be a table, {TABLES[name]}")
-    if "vehicle" in tables and "traffic" in tables:
-        raise ValueError("[vehicle] and [[traffic]]: give one of the two")
-    missing = [name for name in ("bridge", "vehicle", "crossing") if name not in tables]
-    if "traffic" in tables:
-        missing.remove("vehicle")
-    if missing:
-        needed = "a case has [bridge], [vehicle] or [[traffic]], and [crossing]"
-        raise ValueError(f"missing {_list(missing)}; {needed}")
 
 
 def _home(key: str) -> str:

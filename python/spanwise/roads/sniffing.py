@@ -6,13 +6,18 @@ import codecs
 import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Final
 
 from spanwise._checks import shown
 from spanwise.roads._options import given
+from spanwise.roads.erd import MARK
 
 #: Delimiters that are looked for; where two serve alike the first is meant. Blanks come in runs.
 DELIMITERS: Final = ("\t", ";", "|", " ", ",")
+
+#: How much of a file is looked at to tell what it is [bytes].
+_BEGINNING: Final = 2**16
 
 _MARKS: Final = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 #: With which DOS ends a text.
@@ -141,6 +146,21 @@ def decimal_of(rows: Iterable[list[str]], least: int) -> str:
         allowed = f"give {given('decimal', ',')} or {given('decimal', '.')}"
         raise ValueError(f"{shown(doubtful)} may be thousands or have decimals; {allowed}")
     return "."
+
+
+def looks_like_profile(path: Path) -> bool:
+    """Whether a file is no case, by its name or what it holds: an ERD file, or lines of numbers."""
+    if path.suffix.lower() == ".toml" or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        content = file.read(_BEGINNING)
+    try:
+        text = content.decode(encoding_of(content), "replace")
+    except UnicodeError:
+        return False
+    lines = [line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    numbers = sum(is_number(re.split(r"[\s;|,]", line.strip())[0]) for line in lines)
+    return text.startswith(MARK) or 2 * numbers > len(lines)
 
 
 def is_number(text: str, decimal: str | None = None) -> bool:
