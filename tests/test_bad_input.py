@@ -648,3 +648,39 @@ def test_a_huge_case_file_is_refused_unread(tmp_path: Path) -> None:
     taken = fresh(f"measure(lambda: sw.Case.read({str(path)!r}))")
     assert taken["seconds"] < SOON
     assert taken["mebibytes"] < 10
+
+
+#: Not typed, as users may be.
+loose: Any = sw
+
+#: Calls with a keyword misspelt, and what is meant.
+MISSPELT: list[tuple[Callable[[], object], str, str]] = [
+    (lambda: loose.cross(None, None, dampin=0.02), "dampin", "damping"),
+    (lambda: loose.ensemble(None, None, sample=3), "sample", "samples"),
+    (lambda: loose.Bridge(span=[20.0]), "span", "spans"),
+    (lambda: loose.Bridge.from_modes(frequency=[1.0]), "frequency", "frequencies"),
+    (lambda: loose.Axle(tire_stiffness=1e6), "tire_stiffness", "tyre_stiffness"),
+    (lambda: loose.Vehicle(pitch_intertia=1e6), "pitch_intertia", "pitch_inertia"),
+    (lambda: loose.ForceTrain(load=[1e5]), "load", "loads"),
+    (lambda: loose.ISO8608("A", sed=3), "sed", "seed"),
+    (lambda: loose.Profile.read("p.csv", column=1), "column", "columns"),
+    (lambda: loose.Braking(decceleration=1.0), "decceleration", "deceleration"),
+]
+
+
+@pytest.mark.parametrize(("call", "given", "meant"), MISSPELT)
+def test_a_keyword_misspelt_is_suggested(
+    call: Callable[[], object], given: str, meant: str
+) -> None:
+    says = (
+        rf"^[\w.]+\(\) got an unexpected keyword argument '{given}' \(did you mean '{meant}'\?\)$"
+    )
+    with pytest.raises(TypeError, match=says):
+        call()
+
+
+def test_a_keyword_like_none_is_refused_as_it_is() -> None:
+    with pytest.raises(TypeError, match=r"^cross\(\) got an unexpected keyword argument 'xyz'$"):
+        loose.cross(None, None, xyz=1)
+    with pytest.raises(TypeError, match="missing 2 required keyword-only arguments: 'EI' and 'm"):
+        loose.Bridge(spans=[20.0])

@@ -127,8 +127,8 @@ def test_speed_and_road_go_before_those_of_the_case(
     ("arguments", "message"),
     [
         (["--speed", "-2"], "speed = -2: must be"),
-        (["--road", "b"], "class = 'b': must be one of A, B, C"),
-        (["--road", "B", "--seed", "-1"], "seed = -1: must not be negative"),
+        (["--road", "b"], "--road = 'b': must be one of A, B, C"),
+        (["--road", "B", "--seed", "-1"], "--seed = -1: must not be negative"),
         (["--seed", "1"], "has no random [road]; add one, or --road"),
     ],
 )
@@ -216,6 +216,24 @@ def test_a_profile_in_place_of_a_case(
         said = f"{file}: is a measured profile, not a case; in a case it is the road:\n"
         lines = f'[road]\nkind = "profile"\nfile = "{file}"\n'
         assert ((said + lines) in err) == is_profile
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        (["cross", "a.toml", "--speeed", "3"], "--speeed 3 (did you mean '--speed'?)"),
+        (["cross", "a.toml", "--plots=x"], "--plots=x (did you mean '--plot'?)"),
+        (["ensemble", "--samples", "3", "a.toml", "--thread", "3"], "(did you mean '--threads'?)"),
+        (["road", "a.csv", "--profile_start", "3"], "(did you mean '--profile-start'?)"),
+        (["vehicles", "t44", "t45"], "unrecognized arguments: t45\n"),
+    ],
+)
+def test_an_option_misspelt_is_suggested(
+    given: list[str], says: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(given)
+    assert says in capsys.readouterr().err
 
 
 def test_road_by_segments_and_as_json(

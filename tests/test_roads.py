@@ -307,7 +307,7 @@ def test_the_standard_error_of_a_class() -> None:
 def test_too_little_for_a_class(length: float, spacing: float, seen: str) -> None:
     x = np.arange(0.0, length + spacing, spacing)
     road = sw.Profile(x, sw.ISO8608("B").elevation(x))
-    needed = f"this section shows {seen}, and two octaves are needed; take a longer section"
+    needed = f"start, end: this section shows {seen}, and two octaves of 0.011 to 2.83 cycle/m are "
     with pytest.raises(ValueError, match=re.escape(needed)):
         road.iso_class(0.0, length)
 

@@ -36,6 +36,7 @@ def missed(short: sw.Run, long: sw.Run) -> float:
     return worst
 
 
+@pytest.mark.filterwarnings("ignore:speed:spanwise.PlausibilityWarning")
 @pytest.mark.parametrize("damping", [0.005, 0.02, 0.05])
 @pytest.mark.parametrize("speed", [10.0, 22.86, 60.0])
 def test_nothing_follows(damping: float, speed: float) -> None:

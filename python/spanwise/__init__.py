@@ -3,6 +3,7 @@
 from spanwise import roads, vehicles
 from spanwise._concat import concat
 from spanwise._core import __version__
+from spanwise._keys import suggesting
 from spanwise._warnings import DampingWarning, PlausibilityWarning
 from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case, CaseError
@@ -77,6 +78,14 @@ __all__ = [
     "roads",
     "vehicles",
 ]
+
+
+for _made in (
+    *(Along, Axle, Body, Bridge, Hinge, Spring, Support, Vehicle, ForceTrain, MovingMasses),
+    *(ISO8608, Bump, Camber, Joint, Pothole, Profile, Ramp, Step),
+    *(Acceleration, Braking, Passage, Rayleigh, Speeds),
+):
+    suggesting(_made)
 
 
 def __dir__() -> list[str]:

@@ -6,10 +6,13 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+from functools import wraps
 from inspect import Parameter, signature
-from typing import Any, Final
+from typing import Any, Final, TypeVar, cast
 
 from spanwise._shown import LONGEST, shown
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,26 @@ class Keys:
         missing = [key for key in self.required if key not in table]
         if missing:
             raise ValueError(f"missing {', '.join(missing)}")
+
+
+def suggesting(target: T) -> T:
+    """A function or a class that suggests the nearest keyword for one that it does not have."""
+    function: Any = vars(target)["__init__"] if isinstance(target, type) else target
+    known = [*signature(function).parameters]
+    name = getattr(target, "__qualname__", "")
+
+    @wraps(function)
+    def checked(*given: Any, **named: Any) -> Any:
+        for key in named:
+            if key not in known:
+                said = f"{name}() got an unexpected keyword argument {key!r}"
+                raise TypeError(said + suggestion(key, known))
+        return function(*given, **named)
+
+    if not isinstance(target, type):
+        return cast("T", checked)
+    setattr(target, "__init__", checked)  # noqa: B010
+    return target
 
 
 def alike(name: object, known: Iterable[str]) -> object:

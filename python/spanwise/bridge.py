@@ -23,7 +23,7 @@ from spanwise._checks import (
     shown,
     word,
 )
-from spanwise._keys import alike
+from spanwise._keys import alike, suggesting
 from spanwise._value import Value, key, same
 from spanwise.layout import (
     AlongBeam,
@@ -240,6 +240,7 @@ class Bridge:
         }
 
     @classmethod
+    @suggesting
     def from_flexibility(
         cls,
         *,
@@ -325,6 +326,7 @@ class Bridge:
         return cls._of(_core.Bridge.from_flexibility(**given), {"from_flexibility": arguments})
 
     @classmethod
+    @suggesting
     def from_modes(
         cls,
         *,

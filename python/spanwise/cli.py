@@ -6,20 +6,22 @@ import argparse
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from spanwise import _ensemblecommand, _roadcommand
+from spanwise._checks import choice, count
 from spanwise._core import __version__
 from spanwise._csv import csv_files
 from spanwise._figures import figure_files
 from spanwise._files import Content, write_files
+from spanwise._keys import suggestion
 from spanwise._signals import Terminated, terminable
 from spanwise._streams import say, tell
 from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
-from spanwise.roads import ISO8608, Smooth
+from spanwise.roads import CLASSES, ISO8608, Smooth
 from spanwise.summary import summary
 
 BAD_INPUT, FAILURE, INTERRUPTED, SIGNALLED = 2, 1, 130, 128
@@ -64,6 +66,15 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         tell(self.format_usage().rstrip())
         raise SystemExit(_complain(message, BAD_INPUT))
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Options that there are not are refused here, where those of the command are known."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            known = [each for each in self._option_string_actions if each.startswith("--")]
+            near = suggestion(unknown[0].partition("=")[0], known)
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+        return found, unknown
 
     def _print_message(self, message: str, file: object = None) -> None:
         say(message)
@@ -166,7 +177,8 @@ def _overrides(options: argparse.Namespace, case: Case) -> dict[str, object]:
         if getattr(options, key) is not None
     }
     if options.road is not None:
-        given["road"] = ISO8608(options.road, seed=options.seed or 0)
+        letter = choice("--road", options.road, CLASSES)
+        given["road"] = ISO8608(letter, seed=count("--seed", options.seed or 0))
     elif options.seed is not None:
         road = Smooth() if case.road is None else case.road
         given["road"] = reseeded(road, options.seed)

@@ -11,6 +11,7 @@ from spanwise import _core
 from spanwise._checks import number, shown
 from spanwise._computed import Computed
 from spanwise._conditions import Conditions, Recovery
+from spanwise._keys import suggesting
 from spanwise._plausible import doubts
 from spanwise._remarks import remarks
 from spanwise._warnings import PlausibilityWarning, warn
@@ -25,6 +26,7 @@ from spanwise.vehicles import AnyVehicle
 Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
 
 
+@suggesting
 def cross(
     bridge: Bridge,
     vehicle: Traffic,

@@ -13,6 +13,7 @@ from spanwise._asked import recipe_of
 from spanwise._checks import count, shown
 from spanwise._conditions import Recovery
 from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
+from spanwise._keys import suggesting
 from spanwise._progress import Bar
 from spanwise._recipe import Quantity, cores
 from spanwise._rows import Rows
@@ -28,6 +29,7 @@ from spanwise.vehicles import AnyVehicle
 Event: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
 
 
+@suggesting
 def ensemble(
     bridge: Bridge,
     vehicle: Event | Sequence[AnyVehicle] | Sequence[Sequence[Passage]],

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
 from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
+from spanwise._keys import suggesting
 from spanwise._renamed import renamed
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads._doubts import doubts
@@ -122,6 +123,7 @@ class Profile(Road):
         )
 
     @classmethod
+    @suggesting
     def read(
         cls,
         path: str | Path,

@@ -250,9 +250,10 @@ def fitted(wave_numbers: Array, density: Array, band: object) -> IsoClass:
         seen, last = "nothing", float(wave_numbers[-1])
         if last > _LOWEST * width:
             seen = f"only {_LOWEST * width:g} to {last:g} cycle/m"
+        blamed = "start, end" if tuple(limits) == ISO_BAND else f"band = {shown(band)}"
         raise ValueError(
-            f"band = {shown(band)}: this section shows {seen}, and two octaves are needed; "
-            "take a longer section, or points that are closer"
+            f"{blamed}: this section shows {seen}, and two octaves of {limits[0]:g} to "
+            f"{limits[1]:g} cycle/m are needed; take a longer section, or points that are closer"
         )
     inside = (wave_numbers >= lowest) & (wave_numbers <= highest)
     n, levels = wave_numbers[inside], density[inside] * (wave_numbers[inside] / REFERENCE) ** 2
