@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -75,3 +76,11 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
 @pytest.fixture
 def same() -> Same:
     return check_same
+
+
+@pytest.fixture
+def case(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
+    """The case of the file of tests, as a file."""
+    path = tmp_path / "case.toml"
+    path.write_text(request.module.CASE, encoding="utf-8")
+    return path

@@ -51,13 +51,6 @@ depth = 0.02
 FIGURES = ("model", "deflection", "moment", "shear", "impact_factors", "vehicle")
 
 
-@pytest.fixture
-def case(tmp_path: Path) -> Path:
-    path = tmp_path / "case.toml"
-    path.write_text(CASE, encoding="utf-8")
-    return path
-
-
 def left(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()} - {"case.toml"}
 

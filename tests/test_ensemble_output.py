@@ -42,13 +42,6 @@ advance = 0.03
 """
 
 
-@pytest.fixture
-def case(tmp_path: Path) -> Path:
-    path = tmp_path / "case.toml"
-    path.write_text(CASE, encoding="utf-8")
-    return path
-
-
 @pytest.fixture(scope="module")
 def found() -> sw.Ensemble:
     return sw.ensemble(

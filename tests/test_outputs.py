@@ -34,13 +34,6 @@ damping = 0.02
 """
 
 
-@pytest.fixture
-def case(tmp_path: Path) -> Path:
-    path = tmp_path / "case.toml"
-    path.write_text(CASE, encoding="utf-8")
-    return path
-
-
 def names(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 

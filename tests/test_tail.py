@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,7 @@ def test_a_record_that_ends_too_early_says_so() -> None:
     assert 1.2 * up < found.reach <= up
     assert "deflection, up" in none.summary()
     assert "can reach more than was recorded" in none.summary()
+    assert f"deflection, up: {1e3 * found.reach:.3f} mm at most, at x = 12.500 m" in none.summary()
     assert "until no extreme can follow" in free.summary()
     told = json.loads(json.dumps(none.to_dict()))["tail"]
     assert (told["length"], told["settled"]) == (0.0, False)
@@ -136,6 +138,7 @@ def test_samples_that_end_too_early() -> None:
     assert (many.growth > 0.0).all()
     assert (many.tail == 0.0).all()
     assert "in 5 samples free vibration after the end can exceed an extreme" in many.summary()
+    assert re.search(r"x = [\d.]+ m, by at most [\d.]+ % of the largest", many.summary())
     run = many.run(0)
     largest = max(
         abs(each.reach - each.recorded)

@@ -28,7 +28,9 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     """The ensemble of which these are parts, in the order of their numbers.
 
     The result is that of one call for all samples, to the bit, `Ensemble.hash` included. Samples
-    that failed stay among the failures.
+    that failed stay among the failures. So there are no gaps: samples that are missing, as of a
+    lost part, can be computed alone, with `first`; tables of parts with gaps go together by
+    ``pandas.concat``, for `Ensemble.to_pandas` names rows by the numbers of samples.
 
     Parameters
     ----------
@@ -80,7 +82,8 @@ def _check_next(before: Ensemble, number: int, part: Ensemble, i: int) -> None:
     if part.first > end:
         raise ValueError(
             f"ensembles[{i}] = samples from {part.first}: samples {end} to {part.first - 1} are "
-            "missing before it"
+            f"missing before it; compute them with first={end}, samples={part.first - end}, or put "
+            "the tables of parts with gaps together, pandas.concat of their to_pandas()"
         )
 
 

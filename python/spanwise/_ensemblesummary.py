@@ -135,8 +135,8 @@ def _tail(ensemble: Ensemble) -> Iterator[str]:
         "by more than 1 %,"
     )
     yield (
-        f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)}, by "
-        f"{100.0 * growths[row]:.1f} % of the largest along the bridge"
+        f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)}, by at "
+        f"most {100.0 * growths[row]:.1f} % of the largest along the bridge"
     )
 
 

@@ -87,7 +87,7 @@ def growth_in_words(growth: Growth) -> str:
     """What can grow, where, how far, and what there is of it."""
     name, unit, scale = SIDES[growth.quantity, growth.side]
     return (
-        f"{name}: {growth.reach * scale:.3f} {unit} at x = {growth.x:.3f} m, "
+        f"{name}: {growth.reach * scale:.3f} {unit} at most, at x = {growth.x:.3f} m, "
         f"recorded there {growth.recorded * scale + 0.0:.3f}"
     )
 

@@ -210,7 +210,8 @@ class Ensemble:
             ``.max`` and ``.min`` with their ``_time`` [s] and ``_position`` [m] (``.max_time``,
             ``.max_position``, ...), all of shape (samples, sections), and ``.static_max``,
             ``.static_min``, of shape (sections,) where all samples share them. Supports, clamps or
-            axles stand in the place of sections where they have the quantity.
+            axles stand in the place of sections where they have the quantity. ``.max`` and
+            ``.max_time`` are arrays here, where a run has ``.max.value`` and ``.max.time``.
 
         Raises
         ------
@@ -268,7 +269,7 @@ class Ensemble:
 
     @property
     def growth(self) -> Array:
-        """How far free vibration after the end can exceed an extreme, shape (sample,).
+        """How far at most free vibration after the end can exceed an extreme, shape (sample,).
 
         As `Run.growth`: in parts of the largest of its kind along the bridge, of the extreme that
         can grow most. Zero where none can by more than a hundredth of itself and a thousandth of
@@ -463,8 +464,9 @@ class Ensemble:
     def to_npz(self, path: str | Path) -> None:
         """Write all extremes, fingerprints and the settings to a NumPy archive.
 
-        Names are those of the attributes, such as ``moment_max`` and ``axle_loads_min_time``;
-        ``settings`` is JSON text. Read it with `read`, or with ``numpy.load(path)``.
+        The file has the name that is given, with ``.npz`` or without. Names in it are those of the
+        attributes, such as ``moment_max`` and ``axle_loads_min_time``; ``settings`` is JSON text.
+        Read it with `read`, or with ``numpy.load(path)``.
 
         Raises
         ------
@@ -508,7 +510,7 @@ class Ensemble:
         return frame(self, by)
 
     def to_parquet(self, path: str | Path, by: By = "sample") -> None:
-        """Write `to_pandas` to a Parquet file; needs the extra ``spanwise[parquet]``.
+        """Write `to_pandas` to a Parquet file of this name; needs the extra ``spanwise[parquet]``.
 
         Raises
         ------
@@ -520,7 +522,7 @@ class Ensemble:
         write_parquet(self, file_path("path", path), by)
 
     def to_csv(self, path: str | Path, by: By = "sample") -> None:
-        """Write `to_pandas` to a CSV file, with all digits; needs the extra ``spanwise[pandas]``.
+        """Write `to_pandas` with all digits to a CSV file of this name; needs ``spanwise[pandas]``.
 
         Raises
         ------

@@ -71,9 +71,9 @@ class Run(Responses):
         Whether it ended because no extreme could follow; not so where the tail was given, and
         where it was as long as may be.
     growth : float
-        How far free vibration after the end can exceed an extreme, in parts of the largest of its
-        kind along the bridge; of the one of `can_grow` that can grow most, 0 if there is none, NaN
-        where a vehicle stands on the bridge.
+        How far at most free vibration after the end can exceed an extreme, in parts of the largest
+        of its kind along the bridge; of the one of `can_grow` that can grow most, 0 if there is
+        none, NaN where a vehicle stands on the bridge.
     lift_offs : tuple of LiftOff
         Every time a wheel was off the road, on the approach too, until the last axle had left.
     off_road : OffRoad

@@ -83,6 +83,8 @@ class BodyAccelerations(Value):
 class OffRoads(Value):
     """How often and how long wheels were off the road, sample by sample.
 
+    The longest time of a sample is ``ensemble.run(row).off_road.longest``.
+
     Attributes
     ----------
     count : ndarray of int, shape (sample, axle)

@@ -58,8 +58,8 @@ def _description(run: Run) -> Iterator[str]:
     yield f"          {tail_in_words(run)}"
     yield f"          recovery by {used['recovery']}"
     if run.can_grow:
-        yield "note      free vibration after the end can reach more than was recorded; at most,"
-        yield "          where it grows most:"
+        yield "note      free vibration after the end can reach more than was recorded; where it"
+        yield "          grows most, by a bound that need not be met:"
     for growth in run.can_grow:
         yield f"          {growth_in_words(growth)}"
     if run.can_grow and used["tail"] is not None:
