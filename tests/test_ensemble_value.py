@@ -354,3 +354,13 @@ def test_extras_are_named(
     monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(ImportError, match=rf"spanwise\[{extra}\]"):
         use(whole("varied"))
+
+
+@pytest.mark.parametrize("write", ["to_npz", "to_csv", "to_parquet"])
+@pytest.mark.parametrize("name", ["kept", "kept.1", "kept.data"])
+def test_a_file_has_the_name_that_was_given(write: str, name: str, tmp_path: Path) -> None:
+    found = whole("varied")
+    getattr(found, write)(tmp_path / name)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+    if write == "to_npz":
+        assert sw.Ensemble.read(tmp_path / name) == found

@@ -68,6 +68,11 @@ class Profile(Road):
     In a crossing neither the height above the sea nor the grade counts for vertical motion: that is
     counted from the chord of the profile between the start of the approach and the far end of the
     bridge. `detrend` is for what else is made of the elevations.
+
+    Of units that nobody tells, elevations in mm are noticed, in cm too, and in inches on roads of
+    class C or rougher. Not noticed are inches on better roads, which look like those of class F or
+    G: `iso_class` and `iri` tell that. Nor are elevations in feet, or x in feet or yards, which
+    looks like a longer road: compare `ends` with the length that was measured.
     """
 
     kind: ClassVar[str] = "profile"
@@ -147,12 +152,13 @@ class Profile(Road):
         path : str or Path
             The file, of at most 128 MiB; UTF-8, UTF-16 or Windows-1252. Empty lines and lines that
             begin with ``#`` are passed over, and so is a head of lines without numbers: titles,
-            names of the columns, units.
+            names of the columns, units. Without such a head, lines with ``#`` before the points
+            count as one if they have as many columns, and units or the names asked for.
         columns : list of int or str, or one of them, optional
-            Numbers, from 0, or names of the columns with x and elevation, or with elevation alone
-            beside `spacing` and in ERD files with a step. Of several elevations, such as left and
-            right track, the mean is taken. Without, the first two, if there are names of no more,
-            or the only elevation.
+            Numbers, from 0, or names of the columns, with their units or without, that have x and
+            elevation, or elevation alone beside `spacing` and in ERD files with a step. Of several
+            elevations, such as left and right track, the mean is taken. Without, the first two, if
+            there are names of no more, or the only elevation.
         spacing : float, optional
             Distance of the points [m], where no column has x.
         start : float, optional
@@ -168,7 +174,7 @@ class Profile(Road):
             What x and elevation are multiplied by to give metres, such as ``(1.0, 1e-3)`` for
             elevations in millimetres. Without, by the units that the file names: those of an ERD
             file, a line of units, or units with the names, as in ``z [mm]``, ``z (mm)``,
-            ``z / mm``, ``z in mm`` and ``z_mm``.
+            ``z / mm``, ``z in mm``, ``z_mm``, and ``x m  z mm`` between blanks.
         sort : bool, optional
             Whether to bring the points into the order of x. Where x falls from point to point,
             that is done anyway.

@@ -17,7 +17,7 @@ from spanwise._checks import items, numbers, positive, shown, text
 from spanwise._keys import suggestion
 from spanwise.roads import erd
 from spanwise.roads._options import called
-from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of
+from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of, without_unit
 from spanwise.roads.sniffing import encoding_of, is_number, value_of
 
 Array: TypeAlias = NDArray[np.float64]
@@ -108,15 +108,14 @@ def _points(
     if 0 < sheet.expected != len(lines):
         raise ValueError(f"has {len(lines)} samples, and its header says {sheet.expected}")
     if factors is None:
-        units = [sheet.units[place] if place < len(sheet.units) else "" for place in places]
-        found = [sheet.metres(unit) * each for unit, each in zip(units, found, strict=True)]
+        found = [sheet.metres(place) * each for place, each in zip(places, found, strict=True)]
     way = 1.0
     if sheet.along is None:
         x, *tracks = found
     else:
-        start, step, unit = sheet.along
+        start, step, _ = sheet.along
         x, tracks = start + step * np.arange(len(lines), dtype=np.float64), found
-        way = sheet.metres(unit) if factors is None else 1.0
+        way = sheet.metres(None) if factors is None else 1.0
     if factors is not None:
         way, height = factors
         tracks = [height * track for track in tracks]
@@ -168,14 +167,22 @@ def _places(sheet: Sheet, first: Row, wanted: tuple[Column, ...] | None) -> list
         key = f"{called('columns')}[{k}] = {shown(column)}"
         if isinstance(column, int):
             found.append(column)
-        elif column in sheet.names:
-            found.append(sheet.names.index(column))
+        elif (place := _place_of(column, sheet.names)) is not None:
+            found.append(place)
         elif not sheet.names:
             raise ValueError(f"{where}: {key}: the file has no line of names; give a number")
         else:
             allowed = f"must be one of {', '.join(sheet.names)}{suggestion(column, sheet.names)}"
             raise ValueError(f"{where}: {key}: {allowed}")
     return found
+
+
+def _place_of(column: str, names: list[str]) -> int | None:
+    """Which column has this name, or alone has it without its unit."""
+    if column in names:
+        return names.index(column)
+    found = [place for place, name in enumerate(names) if without_unit(name) == column]
+    return found[0] if len(found) == 1 else None
 
 
 def _number(cells: list[str], column: int, line: int, decimal: str) -> float:

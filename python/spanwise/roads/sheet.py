@@ -51,6 +51,8 @@ METRES: Final = {
 #: Units that a name has, in brackets or after a stroke, and its last word, which may be one.
 _TOLD: Final = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|\s/\s*([^\s/]+)$")
 _ENDING: Final = re.compile(r"[\s_/,]([^\s_/,]+)$")
+#: A name and its unit in brackets or after a stroke.
+_WITH_UNIT: Final = re.compile(r"(.*?\S)\s*(?:\[[^\]]*\]|\([^)]*\)|\s/\s*[^\s/]+)")
 #: A name between blanks with its units, or a unit alone.
 _WORD: Final = re.compile(r"\[[^\]]*\]|\([^)]*\)|\S+(?: \[[^\]]*\]| \([^)]*\)| / ?\S+)*")
 
@@ -73,6 +75,8 @@ class Sheet:
         Number of rows that there should be; less than 1 if it is not known.
     is_strict : bool
         Whether what is said in place of units is meant to be one, and not any words in brackets.
+    head : int
+        Number of the line that has the units; 0 if it is not known.
     """
 
     rows: Iterator[Row]
@@ -82,11 +86,19 @@ class Sheet:
     along: tuple[float, float, str] | None = None
     expected: int = 0
     is_strict: bool = False
+    head: int = 0
 
-    def metres(self, unit: str) -> float:
-        """What values in a unit are multiplied by; by 1 if there is none."""
-        if self.is_strict and unit and unit.lower() not in METRES:
-            raise ValueError(f"unit {unit!r}: is not known; give {called('scale')}")
+    def metres(self, place: int | None) -> float:
+        """What a column, or x where none has it, is multiplied by; by 1 if it has no unit."""
+        if place is None:
+            unit, of = ("" if self.along is None else self.along[2]), "the step"
+        else:
+            unit = self.units[place] if place < len(self.units) else ""
+            of = f"column {place} ({self.names[place]})" if place < len(self.names) else "x"
+        if self.is_strict and unit and not _is_unit(unit):
+            where = f"line {self.head}: " if self.head else ""
+            allowed = f"is not known; give {called('scale')}"
+            raise ValueError(f"{where}unit {unit!r} of {of}: {allowed}")
         return METRES.get(unit.lower(), 1.0)
 
 
@@ -122,28 +134,62 @@ def table_of(
             f"line {line}: no numbers in {shown(delimiter.join(cells))}, the last line{hint}"
         )
     points = chain((row for row, _ in lead[head:]), first, rows)
-    titles = [cells for (_, cells), numbers in lead[:head] if numbers == 0]
-    names, units = _head(titles, delimiter, columns)
+    titles = [row for row, numbers in lead[:head] if numbers == 0]
+    width = len((first or [row for row, _ in lead[head:]] or [(0, [])])[0][1])
+    if not titles:
+        titles = [*_remarks(lines(), delimiter, width, columns)]
+    line, names, units = _head(titles, delimiter, width, columns)
     # Square brackets are for units; where one is known, all others are meant to be.
-    is_strict = any(unit in METRES for unit in units) or any("[" in name for name in names)
-    return Sheet(points, names, units, decimal, is_strict=is_strict)
+    is_strict = any(map(_is_unit, units)) or any("[" in name for name in names)
+    return Sheet(points, names, units, decimal, is_strict=is_strict, head=line)
+
+
+def _remarks(
+    lines: Iterator[str], delimiter: str, width: int, columns: tuple[Column, ...]
+) -> Iterator[Row]:
+    """Comments before the points that have as many cells, and name units or columns asked for."""
+    words = {each for each in columns if isinstance(each, str)}
+    for number, line in enumerate(islice(lines, _SEEN), 1):
+        text = line.lstrip()
+        if not text.startswith("#"):
+            if text:
+                return
+            continue
+        for _, cells in rows_of([text.lstrip("# ")], delimiter):
+            found = _joined(cells, width) if delimiter == " " else cells
+            names = {*found, *map(without_unit, found)}
+            told = any(_is_unit(_unit_in(cell)) or _is_unit(_unit(cell)) for cell in found)
+            if len(found) == width and (told or (words and words <= names)):
+                yield number, cells
 
 
 def _head(
-    titles: list[list[str]], delimiter: str, columns: tuple[Column, ...]
-) -> tuple[list[str], list[str]]:
-    """Names and units of the columns."""
+    rows: list[Row], delimiter: str, width: int, columns: tuple[Column, ...]
+) -> tuple[int, list[str], list[str]]:
+    """Names and units of the columns, and the line of the units."""
+    titles = [(line, _joined(cells, width) if delimiter == " " else cells) for line, cells in rows]
     units: list[str] = []
-    if delimiter == " ":
-        titles = [_joined(cells) for cells in titles]
+    line = 0
     # A line of units may have some of what is not read.
-    held = [_unit(cell) in METRES for cell in titles[-1] if cell] if titles else []
+    held = [_is_unit(_unit(cell)) for cell in titles[-1][1] if cell] if titles else []
     if any(held) and 2 * sum(held) >= len(held):
-        units = [_unit(cell) for cell in titles.pop()]
+        line, cells = titles.pop()
+        units = [_unit(cell) for cell in cells]
     words = {each for each in columns if isinstance(each, str)}
-    named = [cells for cells in titles if words and words.issubset(cells)]
-    names = (named or titles or [[]])[-1]
-    return names, units or [_unit_in(name) for name in names]
+    named = [row for row in titles if words and words <= {*row[1], *map(without_unit, row[1])}]
+    at, names = (named or titles or [(0, [])])[-1]
+    return line or at, names, units or [_unit_in(name) for name in names]
+
+
+def without_unit(name: str) -> str:
+    """The name of a column before the unit that it ends with."""
+    found = _WITH_UNIT.fullmatch(name)
+    if found is not None:
+        return found[1]
+    ending = _ENDING.search(name)
+    if ending is None or not _is_unit(_unit(ending[1])):
+        return name
+    return name[: ending.start()].removesuffix(" in")
 
 
 def _unit_in(name: str) -> str:
@@ -151,16 +197,32 @@ def _unit_in(name: str) -> str:
     told = [_unit("".join(groups)) for groups in _TOLD.findall(name)]
     ending = _ENDING.search(name)
     words = [*told, *([] if ending is None else [_unit(ending[1])])]
-    return next((each for each in reversed(words) if each in METRES), (told or [""])[-1])
+    return next((each for each in reversed(words) if _is_unit(each)), (told or [""])[-1])
 
 
 def _unit(text: str) -> str:
-    return text.strip("[](). ").lower()
+    return text.strip("[](). ")
 
 
-def _joined(cells: list[str]) -> list[str]:
-    """Words between blanks, a unit in brackets or after a stroke with the word before."""
-    return _WORD.findall(" ".join(cells))
+def _is_unit(text: str) -> bool:
+    return text.lower() in METRES
+
+
+def _joined(cells: list[str], width: int) -> list[str]:
+    """Words between blanks, a unit in brackets or after a stroke with the word before.
+
+    And a bare one, where words are more than the columns.
+    """
+    words: list[str] = _WORD.findall(" ".join(cells))
+    if len(words) <= width:
+        return words
+    joined: list[str] = []
+    for word in words:
+        if joined and _is_unit(word):
+            joined[-1] += f" {word}"
+        else:
+            joined.append(word)
+    return joined if len(joined) == width else words
 
 
 def erd_of(lines: Callable[[], Iterator[str]]) -> Sheet:
