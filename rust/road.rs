@@ -29,9 +29,9 @@ use random::Random;
 /// Part of the highest wave number of samples, half a wave each, up to which they are taken at their word.
 const OF_NYQUIST: f64 = 0.8;
 
-/// A place, or a millimetre before it at most, in digits that one can write [m].
+/// A place, or a millimetre before it at most, in digits that one can write, never −0 [m].
 pub fn down_to_mm(x: f64) -> f64 {
-    (1e3 * x).floor() / 1e3
+    (1e3 * x).floor() / 1e3 + 0.0
 }
 
 /// Elevation, slope and curvature at a point.

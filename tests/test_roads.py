@@ -521,13 +521,13 @@ def test_a_road_too_short_for_the_path(
 ) -> None:
     first, last, approach = road
     bridge = sw.Bridge(spans=[20.1], EI=4e9, mass=8e3)
-    x = np.linspace(first, last, 9)
+    x = np.linspace(first, last, 999)
     passage = sw.Passage(vehicle=QUARTER, direction=given.get("direction", "right"))
     common: dict[str, Any] = {"speed": 20.0, "damping": 0.0, "ramp": given.get("ramp")}
     common |= {"bridge": bridge, "vehicle": passage}
 
     def cross(from_: float, approach: float) -> sw.Run:
-        measured = sw.Profile(x - x[0] + from_, 1e-6 * np.arange(9) ** 2)
+        measured = sw.Profile(x - x[0] + from_, 1e-9 * np.arange(999) ** 2)
         return sw.cross(**common, approach=approach, road=measured)
 
     with pytest.raises(ValueError, match=rf"the road covers only .*; {re.escape(cure)}$"):
