@@ -281,6 +281,9 @@ def test_road_of_coarse_points(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert (code, err.count("\n")) == (0, 1)
     assert err.startswith("spanwise: warning: road: its points are 0.5 m apart")
     assert "IRI       4.07 m/km\n" in out
+    assert "\nwarning   road: its points are 0.5 m apart" in out
+    _, out, err = asked(0.5, 600.0, "--end", "544", "--json", "-")
+    assert [f"spanwise: warning: {each}\n" for each in json.loads(out)["warnings"]] == [err]
     # What they cannot hold is not told, and the class still is.
     code, out, err = asked(2.5, 2000.0)
     assert (code, err) == (0, "")

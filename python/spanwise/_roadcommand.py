@@ -13,6 +13,7 @@ import numpy as np
 
 from spanwise._core import __version__
 from spanwise._files import write_files
+from spanwise._shown import warned
 from spanwise._streams import tell
 from spanwise.case import Case
 from spanwise.report import json_lines
@@ -111,7 +112,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
 
 def run(options: argparse.Namespace) -> str:
     """Writes the file asked for, and gives the text to print."""
-    with _doubts_told_once():
+    with _doubts_told_once() as told:
         road, files = _read(options)
         start, end = _section(road, options.start, options.end)
         index = _or_reason(lambda: road.iri(start, end))
@@ -120,11 +121,11 @@ def run(options: argparse.Namespace) -> str:
             raise ValueError(index)
         segments = None if options.every is None else road.iri(start, end, every=options.every)
     if options.json is not None:
-        table = json_lines(_as_dict(road, (start, end), index, segments, found))
+        table = json_lines(_as_dict(road, (start, end), index, segments, found, told))
         if options.json == "-":
             return table
         write_files([(Path(options.json), [table.encode()])], inputs=files)
-    return _text(road, (start, end), index, segments, found)
+    return _text(road, (start, end), index, segments, found, told)
 
 
 def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
@@ -145,14 +146,16 @@ def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
 
 
 @contextmanager
-def _doubts_told_once() -> Iterator[None]:
-    """Tells warnings, though what follows may be refused."""
+def _doubts_told_once() -> Iterator[list[str]]:
+    """Tells warnings, though what follows may be refused, and keeps them."""
+    told: list[str] = []
     with warnings.catch_warnings(record=True) as doubts:
         warnings.simplefilter("always", UserWarning)
         try:
-            yield
+            yield told
         finally:
-            for message in dict.fromkeys(str(doubt.message) for doubt in doubts):
+            told += dict.fromkeys(str(doubt.message) for doubt in doubts)
+            for message in told:
                 tell(f"spanwise: warning: {message}")
 
 
@@ -179,6 +182,7 @@ def _text(
     index: float | str,
     segments: IriSegments | None,
     found: IsoClass | str,
+    told: list[str],
 ) -> str:
     lines = [
         f"road      {road_in_words(road)}",
@@ -195,6 +199,7 @@ def _text(
         if found.error is not None and found.band is not None:
             band = f"{found.band[0]:.3g} to {found.band[1]:.3g} cycle/m"
             lines.append(f"          standard error {100.0 * found.error:.0f} %, from {band}")
+    lines += warned(told)
     if segments is not None:
         settled = f"after a lead-in of {segments.lead_in:g} m" if segments.lead_in else "no lead-in"
         lines += ["", f"IRI by segments, {settled}", str(segments)]
@@ -207,11 +212,13 @@ def _as_dict(
     index: float | str,
     segments: IriSegments | None,
     found: IsoClass | str,
+    told: list[str],
 ) -> dict[str, Any]:
     table: dict[str, Any] = {
         "version": __version__,
         "road": road_in_words(road),
         "section": list(section),
+        "warnings": told,
     }
     if isinstance(index, str):
         table |= {"iri": None, "iri_refused": index}
