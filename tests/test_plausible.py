@@ -340,6 +340,8 @@ def test_the_speeds_of_a_kind_are_its_own() -> None:
     two = [sw.Passage(vehicle=sw.vehicles.half_car(), direction=way) for way in ("right", "left")]
     with pytest.warns(sw.PlausibilityWarning, match="^speed = 72: "):
         ensemble(bridge(EI=4e10), two, speed=doubted)
+    # One of the kinds has fewer vehicles than there are speeds.
+    ensemble(bridge(EI=4e10), [two, two[:1]], speed=np.full((2, 2), 20.0), kind=[0, 1])
 
 
 def test_what_was_warned_of_stays_with_the_results(tmp_path: Path) -> None:

@@ -184,11 +184,11 @@ class Recipe(Value):
             np.maximum.at(most, self.kinds, speeds)
 
         def fastest(kind: int, event: Event) -> Event:
-            found = np.broadcast_to(most[kind], len(event)).tolist()
-            pairs = zip(event, found, strict=True)
+            # One for all of its vehicles, or one for each and for those of events with more.
+            given = most[kind].tolist() * (len(event) if most.shape[1] == 1 else 1)
             return tuple(
                 replace(each, speed=speed) if each.speed is None and speed > 0.0 else each
-                for each, speed in pairs
+                for each, speed in zip(event, given, strict=False)
             )
 
         for kind, event in enumerate(self.events):
