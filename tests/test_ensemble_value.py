@@ -58,6 +58,10 @@ def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
         return sw.ensemble(BRIDGE, TRUCK, speed=20.0, **given)
     if name == "varied":
         return sw.ensemble(BRIDGE, [TRUCK, CAR], **(given | varied(first, count)))
+    if name == "of kinds":
+        # Whose loads are as given: static extremes are those of the kinds.
+        kind = varied(first, count)["kind"]
+        return sw.ensemble(BRIDGE, [TRUCK, CAR], speed=20.0, kind=kind, **given)
     if name == "one by one":
         event = [*sw.convoy([CAR, TRUCK], headway=1.5), sw.Passage(vehicle=CAR, direction="left")]
         return sw.ensemble(BRIDGE, event, speed=20.0, quantities=["moment"], **given)
@@ -71,7 +75,7 @@ def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
     return sw.ensemble(BRIDGE, CAR, speed=20.0, **(given | {"factors": factors}))
 
 
-NAMES = ("side by side", "varied", "one by one", "by itself", "stiff")
+NAMES = ("side by side", "varied", "of kinds", "one by one", "by itself", "stiff")
 
 
 @cache

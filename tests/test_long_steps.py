@@ -58,3 +58,14 @@ def test_no_step_no_warning() -> None:
             many(TRUCK, road=road)
             # Side by side a step is no longer than the default anyway.
             many(TRUCK, road=road, step=0.01)
+
+
+def test_of_step_and_advance_the_shorter_counts() -> None:
+    for given in ({"advance": 0.2, "step": 0.004}, {"advance": 0.1, "step": 0.02}):
+        many(TRUCK, road=SHARP, **given)
+    for given, key in (
+        ({"advance": 0.2, "step": 0.02}, "advance = 0.2 m"),
+        ({"advance": 0.2, "step": 0.008}, "step = 0.008 s"),
+    ):
+        with pytest.warns(sw.PlausibilityWarning, match=f"^{key}: .* passes over"):
+            many(TRUCK, road=SHARP, **given)

@@ -148,6 +148,23 @@ def test_samples_that_end_too_early() -> None:
     assert many.growth[0] == run.growth == pytest.approx(largest, rel=1e-9)
 
 
+@pytest.mark.parametrize("recovery", ["force-summation", "force-summation-by-rates"])
+@pytest.mark.parametrize("apart", [False, True])
+def test_samples_whose_bridges_differ(recovery: Any, apart: bool) -> None:
+    """What is said of a sample is what a crossing of its own bridge says."""
+    who: Any = sw.Passage(vehicle=TRUCK, direction="left") if apart else TRUCK
+    factors = {"bridge_stiffness": [0.5, 1.0, 2.0], "bridge_damping": [1.0, 2.0, 1.5]}
+    options: dict[str, Any] = {"speed": 22.86, "modes": 3, "damping": 0.02, "recovery": recovery}
+    many, free = (
+        sw.ensemble(BRIDGE, who, samples=3, factors=factors, tail=tail, **options)
+        for tail in (0.0, None)
+    )
+    for i in range(3):
+        assert many.growth[i] == pytest.approx(many.run(i).growth, rel=1e-6)
+        assert many.growth[i] > 0.0
+        assert free.tail[i] == pytest.approx(free.run(i).tail, rel=1e-9)
+
+
 def test_histories_of_samples_are_as_long_as_the_longest() -> None:
     many = sw.ensemble(
         BRIDGE, TRUCK, samples=4, speed=22.86, road=sw.ISO8608("C"), modes=3, damping=0.02

@@ -186,6 +186,7 @@ def test_what_a_train_and_a_long_list_are_told_by() -> None:
     )
     assert brief(np.zeros((3, 4))) == "float64 array (3, 4)"
     assert brief((1,)) == "(1,)"
+    assert brief([1, 2, 3, 4, 5]) == "[1, 2, ... 5 in all]"
     assert brief({"a": [1, 2]}) == "{'a': [1, 2]}"
 
 
@@ -194,11 +195,12 @@ def test_what_is_the_same() -> None:
     assert same(np.array([1.0, nan]), [1.0, nan])
     assert not same(np.array([1.0, nan]), [1.0, 2.0])
     assert not same(np.zeros(3), np.zeros(4))
+    assert not same(np.zeros(4), np.zeros((2, 2)))
     assert not same(np.zeros(2), [[1.0], [2.0, 3.0]])
     assert same({"a": nan}, {"a": nan})
     assert not same({"a": 1}, {"b": 1})
     assert not same((1, 2), (1, 2, 3))
-    assert key({"a": np.arange(2), "b": nan}) == key({"b": nan, "a": [0, 1]})
+    assert key({"a": np.arange(2), "b": nan}) == key({"b": float("nan"), "a": [0, 1]})
 
 
 def crossed(speed: float) -> sw.Run:

@@ -233,14 +233,13 @@ def _spacing(road: Road, speed: float) -> str | None:
 
 def _passed_over(road: Road, speed: float, step: float | None, advance: float | None) -> str | None:
     """Of a step, or a way per step, that was given: waves of the road that it passes over."""
-    if step is None and advance is None:
-        return None
-    way = min(x for x in (advance, None if step is None else step * speed) if x is not None)
+    by_step = math.inf if step is None else step * speed
+    way = by_step if advance is None else min(advance, by_step)
     patch, shortest = _shortest(road)
     # What is shorter than the contact patch is averaged away.
-    if way <= patch or way <= 0.5 * shortest:
+    if not math.isfinite(way) or way <= patch or way <= 0.5 * shortest:
         return None
-    given = f"step = {step:g} s: at {speed:.3g} m/s" if advance is None else f"advance = {way:g} m:"
+    given = f"step = {step:g} s: at {speed:.3g} m/s" if way == by_step else f"advance = {way:g} m:"
     return (
         f"{given} an axle goes {way:.3g} m in a step, more than half of the shortest wave of the "
         f"road, {shortest:.3g} m, which it passes over; is the step in s, the way in m?"

@@ -155,8 +155,8 @@ class Recipe(Value):
             drive=self.drive,
             road=self.settings["road"],
             gravity=self.conditions.core["gravity"],
-            # Side by side they take no longer ways than by default, whatever the step is.
-            step=None if simple else self.conditions.core["step"],
+            # Side by side no way is longer than by default, or `advance`, whatever the step is.
+            step=None if simple and self.advance is None else self.conditions.core["step"],
             advance=self.advance if simple else None,
         )
 
