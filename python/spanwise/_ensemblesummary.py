@@ -134,10 +134,8 @@ def _tail(ensemble: Ensemble) -> Iterator[str]:
         f"note      in {many(early, 'sample')} free vibration after the end can exceed an extreme "
         "by more than 1 %,"
     )
-    yield (
-        f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)}, by at "
-        f"most {100.0 * growths[row]:.1f} % of the largest along the bridge"
-    )
+    yield (f"          most in sample {ensemble.first + row}, the {ensemble._growing(row)},")
+    yield f"          by at most {100.0 * growths[row]:.1f} % of the largest along the bridge"
 
 
 def _passage(passage: Passage) -> str:
