@@ -233,6 +233,8 @@ def test_failures_are_kept(tmp_path: Path) -> None:
     again = sw.Ensemble.read(tmp_path / "out.npz")
     assert joined == every == again == pickle.loads(pickle.dumps(every))
     assert again.failures == every.failures
+    assert np.isnan(again.envelope("moment").max_time[[1, 4, 7]]).all()
+    assert not np.isnan(again.envelope("moment").max_position[[0, 2]]).any()
     with pytest.raises(RuntimeError, match="row 1: sample number 11 failed"):
         again.run(1)
     table = again.to_pandas()
