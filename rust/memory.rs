@@ -5,6 +5,7 @@
 //! what its control groups do, which is how containers and batch systems bound it.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::Error;
 
@@ -20,16 +21,57 @@ pub const THREAD: f64 = 4e6;
 /// Refuses what would take so many bytes if there are not so many, or more than `most`: `key` and `value` are what asked
 /// for it, `what` takes the memory, `mend` says what would take less.
 pub fn check(key: &str, value: impl ToString, bytes: f64, most: f64, what: &str, mend: &str) -> Result<(), Error> {
+    check_beside(0.0, key, value, bytes, most, what, mend)
+}
+
+fn check_beside(
+    promised: f64,
+    key: &str,
+    value: impl ToString,
+    bytes: f64,
+    most: f64,
+    what: &str,
+    mend: &str,
+) -> Result<(), Error> {
     if bytes <= SMALL.min(most) {
         return Ok(());
     }
-    let there = most.min(available());
+    let there = most.min((available() - promised).max(0.0));
     if bytes <= there {
         return Ok(());
     }
     let allowed = format!("{what} would take {} of memory, more than {}: {mend}", size(bytes), size(there));
     // What is too much wherever it runs is another thing than what is too much here and now.
     Err(if bytes > most { Error::input(key, value, allowed) } else { Error::memory(key, value, allowed) })
+}
+
+/// What work under way was told that it may take, bit by bit [bytes].
+static PROMISED: AtomicU64 = AtomicU64::new(0);
+
+/// Memory promised to work as long as it takes it.
+#[derive(Debug)]
+pub struct Promise(u64);
+
+impl Drop for Promise {
+    fn drop(&mut self) {
+        PROMISED.fetch_sub(self.0, Ordering::Relaxed);
+    }
+}
+
+/// The same as [`check`] for work that takes its memory bit by bit: what others beside it were promised is not there.
+pub fn promise(
+    key: &str,
+    value: impl ToString,
+    bytes: f64,
+    most: f64,
+    what: &str,
+    mend: &str,
+) -> Result<Promise, Error> {
+    let own = if bytes <= SMALL { 0 } else { bytes as u64 };
+    let others = PROMISED.fetch_add(own, Ordering::Relaxed);
+    let promise = Promise(own);
+    check_beside(others as f64, key, value, bytes, most, what, mend)?;
+    Ok(promise)
 }
 
 /// Memory that may be asked for now [bytes]; infinite where the system does not say.
@@ -230,6 +272,16 @@ mod tests {
         assert_eq!(Files::new("first", &files).free(), 2147483648.0 - 1e9);
         let unlimited = [files[0], files[1], (files[2].0, "9223372036854771712\n"), files[3], files[4]];
         assert_eq!(Files::new("unlimited", &unlimited).free(), 21_000_000.0 * 1024.0);
+    }
+
+    #[test]
+    fn what_is_promised_is_not_there_for_others() {
+        let more_than_half = 0.7 * available();
+        let promised = || promise("step", 7, more_than_half, f64::INFINITY, "steps", "use fewer");
+        let first = promised().unwrap();
+        assert!(promised().is_err());
+        drop(first);
+        assert!(promised().is_ok());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::course::Course;
 use crate::crossing::ModalBridge;
 use crate::error::Error;
-use crate::memory;
+use crate::memory::{self, Promise};
 use crate::settings::{Settings, Tail};
 use crate::tail::most_steps;
 
@@ -40,6 +40,8 @@ pub struct Steps {
     /// Way per step [m] of a vehicle alone at constant speed, which is marched in space: its axles are at the same
     /// places after as many steps whatever its speed.
     pub advance: Option<f64>,
+    /// Of the memory that they take, until the crossing is over.
+    _promise: Promise,
 }
 
 impl Steps {
@@ -109,9 +111,6 @@ impl Steps {
             }
             return Err(Error::input(key, value, allowed));
         }
-        let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
-        let mend = "use fewer modes or a longer step";
-        memory::check(key, value, steps * bytes, MAX_HISTORY_BYTES, &format!("{steps:.3e} steps"), mend)?;
         let (h, advance) = match courses {
             [course] if course.is_steady() => {
                 let advance = course.path(settings, length) / count;
@@ -126,7 +125,12 @@ impl Steps {
                 most_steps(slowest, h, room(count, bytes))
             }
         };
-        Ok(Steps { h, count: count as usize, tail, advance })
+        let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
+        // As many steps of a tail that is not given as room is made for at the start.
+        let kept = steps + if settings.tail == Tail::Free { count.min(tail as f64) } else { 0.0 };
+        let mend = "use fewer modes or a longer step";
+        let promise = memory::promise(key, value, kept * bytes, MAX_HISTORY_BYTES, &format!("{kept:.3e} steps"), mend)?;
+        Ok(Steps { h, count: count as usize, tail, advance, _promise: promise })
     }
 }
 

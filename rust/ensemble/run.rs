@@ -1,8 +1,8 @@
 //! A run of a study: samples in portions on all cores, and what comes of them.
 
 use std::collections::BTreeMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 use rayon::prelude::*;
 
@@ -111,6 +111,8 @@ impl Study {
         let portions = portions(&distinct, &mut results, chunk);
         progress.done.fetch_add(lost.len(), Ordering::Relaxed);
         let failures = Mutex::new(lost);
+        // Read by every crossing under way, written by one that needs the memory to itself.
+        let company = RwLock::new(());
         let work = || {
             // In order, so that few marches are under way at a time.
             portions.into_iter().par_bridge().try_for_each(|portion| {
@@ -134,7 +136,20 @@ impl Study {
                 } else {
                     for (&member, record) in members.iter().zip(&mut records) {
                         let sample = member as usize;
-                        match alone::cross(self, &layout, samples, sample, record, &mut || go_on()) {
+                        let mut cross = || alone::cross(self, &layout, samples, sample, record, &mut || go_on());
+                        let beside = {
+                            let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
+                            cross()
+                        };
+                        let crossed = match beside {
+                            // Where there is no room beside others there may be when they have ended.
+                            Err(Error::Memory { .. }) => {
+                                let _by_itself = company.write().unwrap_or_else(PoisonError::into_inner);
+                                cross()
+                            }
+                            beside => beside,
+                        };
+                        match crossed {
                             Ok(()) => {}
                             // That there is no memory says nothing of the sample.
                             Err(cause @ (Error::Interrupted | Error::Memory { .. })) => return Err(cause),
@@ -158,6 +173,9 @@ impl Study {
         threads::pool(working)?.install(work)?;
         results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
         results.failures.sort_by_key(|failure| failure.sample);
+        if !self.shares && self.ask_too_much(samples, &results.failures) {
+            return Err(results.failures.swap_remove(0).cause);
+        }
         if distinct.len() > 1 || lost_rows > 0 {
             put_back(&order, &mut results);
         }
@@ -166,6 +184,17 @@ impl Study {
             at_rest.clear();
         }
         Ok(Run { results, marches, clock: Clock::new(self.settings.tail.seconds(), paces), at_rest })
+    }
+}
+
+impl Study {
+    /// Whether no sample can do what is asked, though its vehicles are sound.
+    fn ask_too_much(&self, samples: &Samples, failures: &[Failure]) -> bool {
+        let refused = |f: &Failure| {
+            f.cause.is_input()
+                && alone::vehicles(&self.kinds[samples.kind(f.sample)].passages, samples, f.sample).is_ok()
+        };
+        !failures.is_empty() && failures.len() == samples.count && failures.iter().all(refused)
     }
 }
 
