@@ -13,6 +13,7 @@ use crate::float_mode::Standard;
 use crate::given::Given;
 use crate::history::History;
 use crate::influence::{Quantity, Responses};
+use crate::line::check_lines;
 use crate::memory;
 use crate::modes::Modes;
 use crate::path::ModeShapes;
@@ -70,7 +71,12 @@ impl Analysis {
                 checked_sections(&sections, bridge.length())?
             }
         };
-        check_lines(sections.len(), bridge.supports().len(), bridge.span_bounds().len() + bridge.stations().len())?;
+        check_memory(
+            sections.len(),
+            modes.len(),
+            bridge.supports().len(),
+            bridge.span_bounds().len() + bridge.stations().len(),
+        )?;
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
@@ -94,7 +100,7 @@ impl Analysis {
         let _mode = Standard::set();
         let (modes, lines) = given.modes(count)?;
         let (sections, chosen) = given.chosen(sections)?;
-        check_lines(chosen.len(), given.responses().len(), given.mesh().panels())?;
+        check_memory(chosen.len(), count, given.responses().len(), given.mesh().panels())?;
         let responses = given.responses().of_sections(&chosen);
         let in_modes = given.damping(&modes, damping)?;
         let factors = given.factors(&responses, &chosen, &modes, (damping, &in_modes));
@@ -250,11 +256,12 @@ impl Watch for Watching<'_> {
 }
 
 /// Refuses sections whose influence lines there is no memory for: twice each, as lines and in the rows, over the panels
-/// between them and a number of other points, for deflection, moment and both shears, and for the supports.
-fn check_lines(sections: usize, supports: usize, points: usize) -> Result<(), Error> {
+/// between them and a number of other points, for deflection, moment and both shears, and for the supports; or modes whose
+/// lines there is none for.
+fn check_memory(sections: usize, modes: usize, supports: usize, points: usize) -> Result<(), Error> {
     let (lines, panels) = (4 * sections + 2 * supports, sections + points);
-    let bytes = 2.0 * size_of::<[f64; 4]>() as f64 * lines as f64 * panels as f64;
-    memory::check("sections", sections, bytes, f64::INFINITY, "influence lines of so many", "use fewer")
+    check_lines("sections", sections, 2.0 * lines as f64, panels, "influence lines of so many")?;
+    check_lines("modes", modes, 2.0 * modes as f64, panels, "lines of so many along the bridge")
 }
 
 fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {

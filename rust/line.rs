@@ -5,6 +5,8 @@
 //! function here needs more than one cubic per panel, and nothing is approximated by interpolating.
 
 use crate::bridge::COINCIDENT;
+use crate::error::Error;
+use crate::memory;
 
 /// The nodes of the bridge, strictly increasing from 0 to the length [m].
 #[derive(Debug, Clone, PartialEq)]
@@ -148,4 +150,10 @@ impl Line {
     pub fn slope_at_node(&self, mesh: &Mesh, node: usize) -> f64 {
         if node == self.cubics.len() { self.slope(mesh, node - 1, 1.0) } else { self.slope(mesh, node, 0.0) }
     }
+}
+
+/// Refuses so many lines over so many panels if there is no memory for them; `key` and `value` are what asked for them.
+pub fn check_lines(key: &str, value: usize, lines: f64, panels: usize, what: &str) -> Result<(), Error> {
+    let bytes = size_of::<[f64; 4]>() as f64 * lines * panels as f64;
+    memory::check(key, value, bytes, f64::INFINITY, what, "use fewer")
 }

@@ -50,6 +50,16 @@ ASKED = [
         "**given)",
         "",
     ),
+    (
+        "bridge.deflections(np.zeros(1), np.linspace(0.0, 36.0, 10**5))",
+        "ValueError loads = ",
+    ),
+    (
+        "bridge.deflections(np.zeros(10**6), np.linspace(0.0, 36.0, 300))",
+        "ValueError x = ",
+    ),
+    ("sw.Profile(np.arange(10.0**7), np.zeros(10**7))", "ValueError x = "),
+    ("sw.ISO8608('A').elevation(np.zeros(15 * 10**6))", "ValueError x = "),
     ("sw.ensemble(bridge, truck, samples=4, threads=4096, advance=0.1, **given)", ""),
     (
         "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.1, quantities=['moment'], "

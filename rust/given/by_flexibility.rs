@@ -8,7 +8,7 @@ use crate::bridge::{COINCIDENT, Support, checked_supports};
 use crate::error::{Error, not_negative};
 use crate::influence::Responses;
 use crate::interpolation::{End, Sides, spline_slopes};
-use crate::line::{Line, Mesh};
+use crate::line::{Line, Mesh, check_lines};
 
 /// F* may be unsymmetric by this fraction of its largest element: what a table of five digits rounds away.
 const UNSYMMETRIC: f64 = 1e-4;
@@ -73,6 +73,8 @@ impl Given {
             .collect::<Result<Vec<usize>, Error>>()?;
         check_symmetry(&data.flexibility, &rows)?;
 
+        // Of every station in the basic bridge and in the actual one, of its moment and both shears, and some of them twice.
+        check_lines("stations", n, (7 * n) as f64, data.path.len() + outer.len(), "lines of so many along the path")?;
         let mesh = Mesh::new(length, data.path.iter().copied().chain(outer.iter().map(|s| s.at)));
         let basic: Vec<Line> = (0..n).map(|j| column(data, &mesh, &outer, j)).collect::<Result<_, Error>>()?;
         let node = |station: usize| mesh.node_at(data.stations[station]);

@@ -7,7 +7,7 @@ use crate::bridge::{COINCIDENT, Support, checked_supports_of_given};
 use crate::error::{Error, not_negative, positive};
 use crate::influence::{Quantity, Responses};
 use crate::interpolation::{End, Sides, spline_slopes};
-use crate::line::{Line, Mesh};
+use crate::line::{Line, Mesh, check_lines};
 use crate::modes::Modes;
 
 /// Given masses and shapes agree if ΦᵀMΦ is the unit matrix to this.
@@ -131,6 +131,8 @@ impl Given {
             sections.push(node);
         }
 
+        let responses = 4 * sections.len() + 2 * supports.len();
+        check_lines("path", count, (modes + responses) as f64, count, "lines of so many points")?;
         let clamps: Vec<usize> =
             supports.iter().filter(|s| s.fixity.rotation() > 0.0).map(|s| mesh.node_at(s.at)).collect();
         let mut all: Vec<Line> = Vec::new();

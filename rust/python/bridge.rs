@@ -15,7 +15,8 @@ use crate::error::Error;
 use crate::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
 use crate::given::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};
 use crate::influence::{self, Quantity};
-use crate::line::{Line, Mesh};
+use crate::line::{Line, Mesh, check_lines};
+use crate::memory;
 use crate::modes::Modes;
 use crate::recovery::Recovery;
 use crate::settlement::Settled;
@@ -170,7 +171,9 @@ fn given_lines((name, values, slopes, modal): PyLines<'_>) -> Result<GivenLines,
 }
 
 /// Value or derivative of lines at x, from the right or from the left; row by row for x.
-fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) -> Vec<f64> {
+fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) -> Result<Vec<f64>, Error> {
+    let (points, bytes) = (format!("{} points", x.len()), (size_of::<f64>() * x.len() * lines.len()) as f64);
+    memory::check("x", points, bytes, f64::INFINITY, &format!("{} lines there", lines.len()), "use fewer")?;
     let near = COINCIDENT * mesh.length();
     let place = |x: f64| {
         let node = mesh.node_at(x);
@@ -187,7 +190,9 @@ fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) ->
         let place = place(x);
         lines.iter().map(move |line| place.map_or(0.0, |(panel, fraction)| value(line, panel, fraction)))
     };
-    x.iter().flat_map(|&x| at(x)).collect()
+    let mut values = Vec::with_capacity(x.len() * lines.len());
+    values.extend(x.iter().flat_map(|&x| at(x)));
+    Ok(values)
 }
 
 fn on_the_beam(key: &str, at: f64, length: f64) -> Result<(), Error> {
@@ -412,13 +417,14 @@ impl PyBridge {
                 let along = x.map(|x| {
                     let flexibility = Flexibility::new(bridge, &[])?;
                     let lines = modes.lines(bridge, &flexibility);
-                    Ok::<_, Error>(read(flexibility.mesh(), &lines, &x, derivative, left))
+                    read(flexibility.mesh(), &lines, &x, derivative, left)
                 });
                 Ok((modes, along.transpose()?))
             }
             Source::Given(given) => {
                 let (modes, lines) = given.modes(count)?;
-                Ok((modes, x.map(|x| read(given.mesh(), &lines, &x, derivative, left))))
+                let along = x.map(|x| read(given.mesh(), &lines, &x, derivative, left));
+                Ok((modes, along.transpose()?))
             }
         })?;
         let along = along.map(|values| rows(py, values, modes.len())).transpose()?;
@@ -463,10 +469,12 @@ impl PyBridge {
             for (i, &at) in loads.iter().enumerate() {
                 on_the_beam(&format!("loads[{i}]"), at, bridge.length())?;
             }
+            let panels = bridge.points().count() + loads.len();
+            check_lines("loads", loads.len(), loads.len() as f64, panels, "deflected shapes of so many")?;
             let flexibility = Flexibility::new(bridge, &loads)?;
             let mesh = flexibility.mesh();
             let forces: Vec<Actions> = loads.iter().map(|&at| vec![(1.0, Action::Force(mesh.node_at(at)))]).collect();
-            Ok(read(mesh, &flexibility.each_deflected(&forces, structure), &x, derivative, left))
+            read(mesh, &flexibility.each_deflected(&forces, structure), &x, derivative, left)
         })?;
         rows(py, values, count)
     }
@@ -544,14 +552,14 @@ impl PyBridge {
             Source::Described(bridge) => {
                 let flexibility = Flexibility::new(bridge, &[at])?;
                 let line = described_line(&flexibility, &quantity, at, structure)?;
-                Ok(read(flexibility.mesh(), &[line], &x, derivative, left))
+                read(flexibility.mesh(), &[line], &x, derivative, left)
             }
             Source::Given(given) => {
                 if structure == Structure::Basic {
                     solved.described("influence_line of the basic bridge")?;
                 }
                 let line = given.line(&quantity, at)?;
-                Ok(read(given.mesh(), std::slice::from_ref(line), &x, derivative, left))
+                read(given.mesh(), std::slice::from_ref(line), &x, derivative, left)
             }
         })?;
         Ok(values.into_pyarray(py))
