@@ -76,10 +76,19 @@ fn preparing<T: Send + 'static>(
     order: usize,
     work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
-    if order <= SMALL {
-        return interruptible(py, work);
+    aside(py, order > SMALL, work)
+}
+
+/// Runs `work` [`attended`] if it is `long` between its questions, or [`interruptible`] as it is.
+fn aside<T: Send + 'static>(
+    py: Python<'_>,
+    long: bool,
+    work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    match long {
+        true => attended(py, 0, None, move |progress| work(&mut || !progress.stop.load(Ordering::Relaxed))),
+        false => interruptible(py, work),
     }
-    attended(py, 0, None, move |progress| work(&mut || !progress.stop.load(Ordering::Relaxed)))
 }
 
 /// Runs `work` on a thread of its own with the interpreter released. Every 100 ms Python handles signals, and hears how

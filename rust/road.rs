@@ -97,6 +97,16 @@ impl Road {
         self.parts.is_empty()
     }
 
+    /// Points that its parts are given by.
+    pub fn points(&self) -> usize {
+        let of = |part: &Part| match part {
+            Part::Random(random) => random.points(),
+            Part::Profile(profile) => profile.points(),
+            Part::Feature(_) | Part::Datum(_) => 0,
+        };
+        self.parts.iter().map(of).sum()
+    }
+
     /// Elevation, slope and curvature at x [m].
     ///
     /// A random road repeats beyond its period, and a profile goes on along the tangents at its ends: see
@@ -141,15 +151,24 @@ impl Road {
         Road { parts }
     }
 
-    /// The same surface averaged over another length [m] than its contact patches, exactly.
-    pub fn averaged(&self, length: f64) -> Result<Self, Error> {
+    /// The same surface averaged over another length [m] than its contact patches, exactly; `go_on` is asked before each
+    /// part whether to.
+    pub fn averaged(&self, length: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Error> {
         let patch = Patch::new(length)?;
-        self.remade(|profile| profile.under(patch), patch)
+        self.remade(|profile| profile.under(patch), patch, go_on)
     }
 
     /// The surface with its profiles as `profile` makes them and all else under a contact patch.
-    fn remade(&self, profile: impl Fn(&Profile) -> Profile, patch: Patch) -> Result<Self, Error> {
+    fn remade(
+        &self,
+        profile: impl Fn(&Profile) -> Profile,
+        patch: Patch,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Self, Error> {
         let parts = self.parts.iter().map(|part| {
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
             Ok(match part {
                 Part::Random(random) => Part::Random(Arc::new(random.under(patch)?)),
                 Part::Profile(measured) => Part::Profile(Arc::new(profile(measured))),

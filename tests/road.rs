@@ -747,6 +747,7 @@ fn segments_are_one_drive() {
     }
     let interrupted = golden_car::segments(&road, 60.0, 960.0, 20.0, &mut || false);
     assert_eq!(interrupted.unwrap_err(), Error::Interrupted);
+    assert_eq!(road.averaged(0.1, &mut || false).unwrap_err(), Error::Interrupted);
     for (every, part) in [(0.2, "at least 0.25 m"), (-1.0, "greater than 0"), (f64::NAN, "greater than 0")] {
         assert!(refusal(golden_car::segments(&road, 0.0, 100.0, every, go_on)).contains(part));
     }
@@ -756,8 +757,8 @@ fn segments_are_one_drive() {
 fn averages_of_any_length_are_those_of_the_surface() {
     for ((name, bare), (_, felt)) in kinds(0.0).into_iter().zip(kinds(PATCH)) {
         for x in grid(0.4137, 29.5, 0.531) {
-            assert_eq!(felt.averaged(0.0).unwrap().at(x), bare.at(x), "{name}");
-            assert_eq!(bare.averaged(PATCH).unwrap().at(x), felt.at(x), "{name}");
+            assert_eq!(felt.averaged(0.0, &mut || true).unwrap().at(x), bare.at(x), "{name}");
+            assert_eq!(bare.averaged(PATCH, &mut || true).unwrap().at(x), felt.at(x), "{name}");
         }
     }
 }

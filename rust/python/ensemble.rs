@@ -14,7 +14,7 @@ use super::bridge::{Asked, PyBridge};
 use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, passage, quantity, recovery_named};
 use super::road::PyRoad;
 use super::vehicle::{PyBody, PyVehicle, parts_of};
-use super::{Matrix, Vector, attended, interruptible, packed, rows};
+use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
 use crate::course::Passage;
 use crate::ensemble::clock;
 use crate::ensemble::record::{Column, Layout, fingerprint as fingerprint_of};
@@ -238,9 +238,15 @@ impl Clock {
     }
 }
 
+/// Coordinates of the vehicles of an event.
+fn coordinates(event: &[Passage]) -> usize {
+    event.iter().map(|passage| passage.vehicle.assembly().coordinates.len()).sum()
+}
+
 /// The vehicles of an event with the factors of one sample, and their bodies.
 #[pyfunction]
 pub fn varied<'py>(
+    py: Python<'py>,
     event: Vec<PyPassage<'py>>,
     factors: Vec<PyFactors<'py>>,
 ) -> PyResult<Vec<(PyVehicle, Vec<PyBody>)>> {
@@ -252,7 +258,8 @@ pub fn varied<'py>(
         let bodies = vehicle.bodies().iter().map(parts_of).collect();
         (PyVehicle(vehicle), bodies)
     };
-    Ok(alone::vehicles(&event, &samples, 0)?.into_iter().map(with_bodies).collect())
+    let vehicles = preparing(py, coordinates(&event), move |_| alone::vehicles(&event, &samples, 0))?;
+    Ok(vehicles.into_iter().map(with_bodies).collect())
 }
 
 /// Static axle loads of all samples [N], a row for each; NaN where the vehicle of a sample cannot be.
@@ -279,20 +286,21 @@ pub fn static_loads<'py>(
     samples.check(&borrowed)?;
     let contacts = |vehicle: &Vehicle| vehicle.assembly().contacts.len();
     let axles = as_given.iter().map(|event| event.iter().map(contacts).sum::<usize>()).max().unwrap_or(0);
-    let loads = |vehicles: &[Vehicle]| {
-        let mut all: Vec<f64> = vehicles.iter().flat_map(|vehicle| vehicle.static_loads(gravity)).collect();
-        all.resize(axles, f64::NAN);
-        all
-    };
-    let nominal: Vec<Vec<f64>> = as_given.iter().map(|event| loads(event)).collect();
     let bytes = (size_of::<f64>() * count) as f64 * axles as f64;
     memory::check("samples", count, bytes, f64::INFINITY, "static axle loads", "use fewer")?;
-    let all = interruptible(py, |go_on| {
-        let mut all = Vec::with_capacity(count * axles);
+    let order = kinds.iter().map(|event| coordinates(event)).max().unwrap_or(0);
+    let all = preparing(py, order, move |go_on| {
+        let loads = |vehicles: &[Vehicle]| {
+            let mut all: Vec<f64> = vehicles.iter().flat_map(|vehicle| vehicle.static_loads(gravity)).collect();
+            all.resize(axles, f64::NAN);
+            all
+        };
+        let mut ask = || if go_on() { Ok(()) } else { Err(Error::Interrupted) };
+        let nominal = as_given.iter().map(|event| ask().map(|()| loads(event))).collect::<Result<Vec<_>, Error>>()?;
+        let mut all = Vec::new();
+        memory::reserve(&mut all, "samples", count, count * axles)?;
         for sample in 0..count {
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
+            ask()?;
             let kind = samples.kind(sample);
             match samples.varies_loads() {
                 // A sample whose vehicle cannot be has no results either.

@@ -3,8 +3,9 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use super::{Vector, interruptible};
+use super::{Vector, aside, interruptible};
 use crate::error::Error;
+use crate::memory;
 use crate::road::feature::Feature;
 use crate::road::patch::Patch;
 use crate::road::profile::Profile;
@@ -15,6 +16,9 @@ use crate::road::{self, golden_car};
 /// A road surface.
 #[pyclass(name = "Road", frozen, module = "spanwise._core")]
 pub struct PyRoad(pub road::Road);
+
+/// Points of a road up to which it is made in a moment.
+const FEW: usize = 100_000;
 
 fn single(feature: impl FnOnce(Patch) -> Result<Feature, Error>, contact_patch: f64) -> PyResult<PyRoad> {
     Ok(PyRoad(feature(Patch::new(contact_patch)?)?.into()))
@@ -42,13 +46,17 @@ impl PyRoad {
     ) -> PyResult<Self> {
         let spectrum = Spectrum::new(roughness, waviness, band)?;
         let patch = Patch::new(contact_patch)?;
-        let random = py.detach(|| Ok::<_, Error>(Synthesis::new(spectrum, patch, period)?.road(seed, sample)))?;
+        let random = interruptible(py, |go_on| {
+            let synthesis = Synthesis::new(spectrum, patch, period)?;
+            if go_on() { Ok(synthesis.road(seed, sample)) } else { Err(Error::Interrupted) }
+        })?;
         Ok(PyRoad(random.into()))
     }
 
     #[staticmethod]
     #[pyo3(signature = (*, x, elevation, detrend, contact_patch, max_gap))]
     fn profile(
+        py: Python<'_>,
         x: PyReadonlyArray1<'_, f64>,
         elevation: PyReadonlyArray1<'_, f64>,
         detrend: bool,
@@ -56,7 +64,8 @@ impl PyRoad {
         max_gap: Option<f64>,
     ) -> PyResult<Self> {
         let (x, elevation) = (x.as_array().to_vec(), elevation.as_array().to_vec());
-        let profile = Profile::new(x, elevation, detrend, Patch::new(contact_patch)?, max_gap)?;
+        let (patch, points) = (Patch::new(contact_patch)?, x.len());
+        let profile = aside(py, points > FEW, move |_| Profile::new(x, elevation, detrend, patch, max_gap))?;
         Ok(PyRoad(profile.into()))
     }
 
@@ -106,6 +115,8 @@ impl PyRoad {
         x: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<(Vector<'py>, Vector<'py>, Vector<'py>)> {
         let x = x.as_array().to_vec();
+        let (count, bytes) = (x.len(), ((size_of::<road::Point>() + 3 * size_of::<f64>()) * x.len()) as f64);
+        memory::check("x", format!("{count} points"), bytes, f64::INFINITY, "the surface there", "use fewer")?;
         let points = interruptible(py, |go_on| {
             let point = |&x: &f64| if go_on() { Ok(self.0.at(x)) } else { Err(Error::Interrupted) };
             x.iter().map(point).collect::<Result<Vec<road::Point>, Error>>()
@@ -116,7 +127,8 @@ impl PyRoad {
 
     /// The same averaged over another length than its contact patches.
     fn averaged(&self, py: Python<'_>, length: f64) -> PyResult<Self> {
-        Ok(PyRoad(py.detach(|| self.0.averaged(length))?))
+        let road = self.0.clone();
+        Ok(PyRoad(aside(py, road.points() > FEW, move |go_on| road.averaged(length, go_on))?))
     }
 
     /// Wave numbers up to which all parts are known, and those of the finest.
@@ -125,7 +137,8 @@ impl PyRoad {
     }
 
     fn iri(&self, py: Python<'_>, start: f64, end: f64) -> PyResult<f64> {
-        interruptible(py, |go_on| golden_car::iri(&self.0, start, end, go_on))
+        let road = self.0.clone();
+        aside(py, road.points() > FEW, move |go_on| golden_car::iri(&road, start, end, go_on))
     }
 
     /// The index by segments: their ends, the values, and the road before the first.
@@ -136,7 +149,9 @@ impl PyRoad {
         end: f64,
         every: f64,
     ) -> PyResult<(Vector<'py>, Vector<'py>, f64)> {
-        let found = interruptible(py, |go_on| golden_car::segments(&self.0, start, end, every, go_on))?;
+        let road = self.0.clone();
+        let drive = move |go_on: &mut dyn FnMut() -> bool| golden_car::segments(&road, start, end, every, go_on);
+        let found = aside(py, self.0.points() > FEW, drive)?;
         Ok((found.edges.into_pyarray(py), found.values.into_pyarray(py), found.lead_in))
     }
 }

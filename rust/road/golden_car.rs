@@ -107,7 +107,7 @@ pub fn drive(
     mut take: impl FnMut(f64, f64),
 ) -> Result<(), Error> {
     check(road, start, end)?;
-    let (felt, base) = felt(road, start, end)?;
+    let (felt, base) = felt(road, start, end, go_on)?;
     let elevation = |x: f64| felt.at(x).elevation;
     let (transition, input) = step_matrices();
     let first = start + 0.5 * base;
@@ -143,12 +143,12 @@ fn check(road: &Road, start: f64, end: f64) -> Result<(), Error> {
 }
 
 /// The road as the tyre of the golden car feels it, and the length over which anything of it is averaged [m].
-fn felt(road: &Road, start: f64, end: f64) -> Result<(Road, f64), Error> {
+fn felt(road: &Road, start: f64, end: f64, go_on: &mut dyn FnMut() -> bool) -> Result<(Road, f64), Error> {
     let (base, none) = (Patch::new(BASE)?, Patch::new(0.0)?);
     let is_coarse = |profile: &Profile| profile.spacing(start, end) > COARSE;
     let is_all_coarse = road.parts.iter().all(|part| matches!(part, Part::Profile(profile) if is_coarse(profile)));
     let chords = |profile: &Profile| profile.chords(if is_coarse(profile) { none } else { base });
-    Ok((road.remade(chords, base)?, if is_all_coarse { 0.0 } else { BASE }))
+    Ok((road.remade(chords, base, go_on)?, if is_all_coarse { 0.0 } else { BASE }))
 }
 
 /// Transition over a step, and the effect of a unit slope during it: blocks of the exponential of both together.

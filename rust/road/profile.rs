@@ -8,12 +8,17 @@
 use super::Point;
 use super::patch::{Curve, Patch};
 use crate::error::{Error, finite, positive};
+use crate::float_mode::Standard;
+use crate::memory;
 
 /// Fewest points that determine a cubic.
 const FEWEST: usize = 4;
 
 /// Largest spacing without a `max_gap`, in median spacings.
 const GAP: f64 = 5.0;
+
+/// Numbers for each point while the spline is made, twelve at most, and what is kept of them [bytes].
+const POINT: usize = 12 * size_of::<f64>();
 
 /// Part of a section that must be measured as finely as its spacing says.
 const MOST_OF_IT: f64 = 0.9;
@@ -41,6 +46,9 @@ impl Profile {
         patch: Patch,
         max_gap: Option<f64>,
     ) -> Result<Self, Error> {
+        let _mode = Standard::set();
+        let bytes = (POINT * x.len()) as f64;
+        memory::check("x", format!("{} points", x.len()), bytes, f64::INFINITY, "their spline", "use fewer")?;
         check(&x, &elevation, max_gap)?;
         if detrend {
             take_off_line(&x, &mut elevation);
@@ -82,7 +90,7 @@ impl Profile {
         let first = self.x.partition_point(|&x| x <= from).saturating_sub(1).min(points - 2);
         let end = (self.x.partition_point(|&x| x < to) + 1).clamp(first + 2, points);
         let mut spacings: Vec<f64> = self.x[first..end].windows(2).map(|pair| pair[1] - pair[0]).collect();
-        spacings.sort_by(f64::total_cmp);
+        spacings.sort_unstable_by(f64::total_cmp);
         let mut left = MOST_OF_IT * (self.x[end - 1] - self.x[first]);
         let exceeded = |spacing: &&f64| {
             left -= **spacing;
@@ -90,6 +98,11 @@ impl Profile {
         };
         let within = spacings.iter().take_while(exceeded).count();
         spacings[within.min(spacings.len() - 1)]
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.x.len()
     }
 
     /// First and last x [m].
@@ -131,9 +144,10 @@ fn check(x: &[f64], elevation: &[f64], max_gap: Option<f64>) -> Result<(), Error
     if x.len() < FEWEST {
         return Err(Error::input("x", format!("{} points", x.len()), format!("must be {FEWEST} or more")));
     }
-    for (k, (x, elevation)) in x.iter().zip(elevation).enumerate() {
-        finite(format!("x[{k}]"), *x)?;
-        finite(format!("elevations[{k}]"), *elevation)?;
+    // A name for each of millions of points would take longer than the spline.
+    if let Some(k) = x.iter().zip(elevation).position(|(x, elevation)| !(x.is_finite() && elevation.is_finite())) {
+        finite(format!("x[{k}]"), x[k])?;
+        finite(format!("elevations[{k}]"), elevation[k])?;
     }
     for (k, pair) in x.windows(2).enumerate() {
         if pair[1] <= pair[0] {
@@ -141,11 +155,13 @@ fn check(x: &[f64], elevation: &[f64], max_gap: Option<f64>) -> Result<(), Error
             return Err(Error::input(format!("x[{}]", k + 1), format!("{} m", pair[1]), allowed));
         }
     }
-    let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    spacings.sort_by(f64::total_cmp);
     let limit = match max_gap {
         Some(gap) => positive("max_gap", gap)?,
-        None => GAP * spacings[spacings.len() / 2],
+        None => {
+            let mut spacings: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let middle = spacings.len() / 2;
+            GAP * *spacings.select_nth_unstable_by(middle, f64::total_cmp).1
+        }
     };
     for (k, pair) in x.windows(2).enumerate() {
         let gap = pair[1] - pair[0];

@@ -178,6 +178,11 @@ impl Random {
         self.spline.period()
     }
 
+    /// Number of grid points in a period.
+    pub fn points(&self) -> usize {
+        self.spline.coefficients().len()
+    }
+
     /// The same road under another contact patch.
     pub fn under(&self, patch: Patch) -> Result<Self, Error> {
         Ok(Synthesis::new(self.spectrum, patch, Some(self.period()))?.road(self.seed, self.sample))
