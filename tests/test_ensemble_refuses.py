@@ -228,7 +228,7 @@ def test_the_speed_of_a_case_may_be_there_for_nobody(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("who", [TRUCK, LEFT], ids=["side by side", "one by one"])
 @pytest.mark.parametrize("asked", [{"step": 1e-9}, {"tail": 1e7}], ids=str)
-def test_what_no_sample_can_do_is_refused(who: Any, asked: dict[str, float]) -> None:
+def test_what_no_sample_can_do_is_refused(who: Any, asked: dict[str, Any]) -> None:
     key = next(iter(asked))
     with pytest.raises(ValueError, match=rf"{key} = .*: .*more than|{key} = .*: .*at most"):
         sw.ensemble(BRIDGE, who, samples=3, speed=[20.0, 21.0, 22.0], damping=0.02, **asked)
