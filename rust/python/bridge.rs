@@ -172,7 +172,8 @@ fn given_lines((name, values, slopes, modal): PyLines<'_>) -> Result<GivenLines,
 
 /// Value or derivative of lines at x, from the right or from the left; row by row for x.
 fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) -> Result<Vec<f64>, Error> {
-    let (points, bytes) = (format!("{} points", x.len()), (size_of::<f64>() * x.len() * lines.len()) as f64);
+    let count = x.len() * lines.len();
+    let (points, bytes) = (format!("{} points", x.len()), (size_of::<f64>() * count) as f64);
     memory::check("x", points, bytes, f64::INFINITY, &format!("{} lines there", lines.len()), "use fewer")?;
     let near = COINCIDENT * mesh.length();
     let place = |x: f64| {
@@ -190,7 +191,7 @@ fn read(mesh: &Mesh, lines: &[Line], x: &[f64], derivative: bool, left: bool) ->
         let place = place(x);
         lines.iter().map(move |line| place.map_or(0.0, |(panel, fraction)| value(line, panel, fraction)))
     };
-    let mut values = Vec::with_capacity(x.len() * lines.len());
+    let mut values = Vec::with_capacity(count);
     values.extend(x.iter().flat_map(|&x| at(x)));
     Ok(values)
 }
