@@ -41,7 +41,12 @@ CASES = (
     Case("ensemble/kishan_1973/modes=3/scalar", "scalar", 2),
     Case("ensemble/kishan_1973/modes=3/avx2", "avx2", 2),
     Case("crossing/kishan_1973/modes=3", "crossing", 4),
+    Case("ensemble/kinds of one sample", "kinds", 8),
+    Case("crossing/the same trucks", "loop", 8),
 )
+
+# What may take no more than what.
+NO_MORE = [("ensemble/kinds of one sample", "crossing/the same trucks")]
 
 
 class Unusable(Exception):
@@ -163,6 +168,11 @@ def compare(counts: dict[str, int | None]) -> bool:
         )
         if baseline["rustc"] != compiler():
             print(f"The baseline is of rustc {baseline['rustc']}, this is {compiler()}.")
+    for name, other in NO_MORE:
+        mine, others = counts[name], counts[other]
+        if mine is not None and others is not None and mine > others:
+            print(f"{name}: {mine / others:.3f} times the instructions of {other}\n  FAILED: more")
+            held = False
     return held
 
 

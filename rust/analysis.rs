@@ -207,21 +207,28 @@ pub struct Watching<'a> {
     factors: [f64; 2],
     packed: Packed,
     survey: Option<Survey<'a>>,
+    /// A row that could still grow when last asked, with what it had reached at so many instants.
+    growing: Option<(usize, [f64; 2], usize)>,
 }
 
 impl<'a> Watching<'a> {
     /// By the rows of an analysis, which take A and Ȧ so many times as large; the tail is to be long enough for some of
     /// its responses.
     pub fn new(analysis: &'a Analysis, free: &'a FreeRows, factors: [f64; 2]) -> Self {
-        Watching { analysis, free, factors, packed: Packed::default(), survey: None }
+        Watching { analysis, free, factors, packed: Packed::default(), survey: None, growing: None }
+    }
+
+    /// Makes ready what has been recorded since.
+    fn make_ready(&mut self, history: &mut History) {
+        let [coordinates, rates] = self.factors;
+        history.scale(self.packed.len(), coordinates, rates);
+        self.analysis.rows.pack_on(history, &mut self.packed);
     }
 
     /// Takes in what has been recorded since.
     fn take_in(&mut self, history: &mut History, go_on: &mut dyn FnMut() -> bool) -> Result<&Survey<'a>, Error> {
+        self.make_ready(history);
         let Analysis { rows, responses, .. } = self.analysis;
-        let [coordinates, rates] = self.factors;
-        history.scale(self.packed.len(), coordinates, rates);
-        rows.pack_on(history, &mut self.packed);
         let survey = self.survey.get_or_insert_with(|| Survey::new(history, rows, responses));
         survey.go_on(history, &self.packed, go_on)?;
         Ok(survey)
@@ -249,9 +256,28 @@ impl Watch for Watching<'_> {
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<bool, Error> {
         let (free, [coordinates, rates]) = (self.free, self.factors);
+        let reach = reach.clone().scaled(coordinates, rates);
+        let load: f64 = history.static_loads.iter().sum();
+        self.make_ready(history);
+        // One row that can still grow is enough to go on, and little work to ask: all others can wait.
+        if let (Some((row, seen, instants)), Some(survey)) = (&mut self.growing, &self.survey)
+            && survey.is_past()
+        {
+            for now in self.packed.instants(*instants..self.packed.len()) {
+                let value = self.analysis.rows.value(free.responses[*row], now);
+                *seen = [seen[0].max(value), seen[1].min(value)];
+            }
+            *instants = self.packed.len();
+            if free.unsettled(*row, &reach, load, *seen) {
+                return Ok(false);
+            }
+        }
         let survey = self.take_in(history, go_on)?;
-        let load = history.static_loads.iter().sum();
-        Ok(free.settled(&reach.clone().scaled(coordinates, rates), load, |row| survey.reached(free.responses[row])))
+        let reached = |row: usize| survey.reached(free.responses[row]);
+        let mut rows = 0..free.responses.len();
+        let growing = rows.find(|&row| free.unsettled(row, &reach, load, reached(row))).map(|row| (row, reached(row)));
+        self.growing = growing.map(|(row, seen)| (row, seen, self.packed.len()));
+        Ok(growing.is_none())
     }
 }
 

@@ -122,11 +122,22 @@ pub struct Ready<'a> {
 
 /// An axle on the bridge or, without a load, off it.
 #[derive(Debug, Clone, Copy)]
-struct Placed {
+pub struct Placed {
     panel: usize,
     fraction: f64,
     load: f64,
     static_load: f64,
+}
+
+impl Placed {
+    /// An axle at a place with its loads [N].
+    #[inline(always)]
+    pub fn new(place: Place, load: f64, static_load: f64) -> Self {
+        match place {
+            Some((panel, fraction)) => Placed { panel, fraction, load, static_load },
+            None => Placed { panel: 0, fraction: 0.0, load: 0.0, static_load: 0.0 },
+        }
+    }
 }
 
 /// The rows of all responses, laid out in blocks so that evaluating them runs along contiguous numbers.
@@ -325,10 +336,7 @@ impl Rows {
         }
         let weight = self.weight();
         for ((place, load), &static_load) in now.places.iter().zip(now.loads).zip(now.static_loads) {
-            packed.axles.push(match *place {
-                Some((panel, fraction)) => Placed { panel, fraction, load: weight * load, static_load },
-                None => Placed { panel: 0, fraction: 0.0, load: 0.0, static_load: 0.0 },
-            });
+            packed.axles.push(Placed::new(*place, weight * load, static_load));
         }
     }
 
@@ -356,25 +364,27 @@ impl Rows {
         (dynamic, at_rest)
     }
 
+    /// One response at one instant, to the bit as [`Rows::block`] has it.
+    pub fn value(&self, r: usize, now: Ready<'_>) -> f64 {
+        let modal = now.coordinates.iter().enumerate().fold(0.0, |sum, (i, a)| sum + self.factor(r, i) * a);
+        let axles = now.axles.iter();
+        axles.fold(modal, |sum, axle| sum + self.influence_of(r, (axle.panel, axle.fraction)) * axle.load)
+    }
+
     /// One block of responses to coordinates and to loads at their places.
     #[inline(always)]
-    pub fn block_of(
-        &self,
-        b: usize,
-        coordinates: impl Iterator<Item = f64>,
-        loads: impl Iterator<Item = (Place, f64)>,
-    ) -> Block {
+    pub fn block_of(&self, b: usize, coordinates: &[f64], axles: &[Placed]) -> Block {
         let mut values = [0.0; WIDTH];
         for (factor, a) in self.factors[b * self.width..(b + 1) * self.width].iter().zip(coordinates) {
             for i in 0..WIDTH {
                 values[i] += factor[i] * a;
             }
         }
-        for (place, load) in loads {
-            let Some((panel, f)) = place else { continue };
-            let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + b];
+        for axle in axles {
+            let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
+            let f = axle.fraction;
             for i in 0..WIDTH {
-                values[i] += (c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))) * load;
+                values[i] += (c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))) * axle.load;
             }
         }
         values
@@ -390,7 +400,8 @@ impl Rows {
     /// The same, of the instants that have been added to the history since.
     pub fn pack_on(&self, history: &History, packed: &mut Packed) {
         let (axles, from) = (history.axles, packed.len());
-        let more = history.len() - from;
+        // For all that the history has room for, so that numbers are not moved each time that it has grown.
+        let more = history.time.capacity() - from;
         packed.coordinates.reserve(self.width * more);
         packed.static_coordinates.reserve(self.width * more);
         packed.axles.reserve(axles * more);

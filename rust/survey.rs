@@ -98,6 +98,11 @@ impl<'a> Survey<'a> {
         [max.larger(self.dynamic.max[r].value), min.smaller(self.dynamic.min[r].value)]
     }
 
+    /// Whether every axle had passed every stop, so that nothing but instants of the history follows.
+    pub fn is_past(&self) -> bool {
+        self.passing.passed.iter().all(|&count| count == self.passing.stops.len())
+    }
+
     #[inline(always)]
     fn go_through(&mut self, history: &History, packed: &Packed, instants: Range<usize>) {
         for (b, watched) in self.watched.iter_mut().enumerate() {

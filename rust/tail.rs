@@ -273,13 +273,9 @@ impl FreeRows {
     /// being those that `seen` tells; the static `load` is that of all axles [N].
     #[inline(always)]
     pub fn settled<L: Lane>(&self, reach: &Reach<L>, load: L, seen: impl Fn(usize) -> [L; 2]) -> L::Mask {
-        let floors = self.rounding.map(|each| L::splat(each) * load);
         let mut unsettled = L::never();
         for r in 0..self.rest.len() {
-            let (bound, [max, min]) = (reach.of(self.row(r)), seen(r));
-            let beyond = |extreme: L| extreme + L::splat(TOLERANCE) * extreme.magnitude() + floors[self.kinds[r]];
-            // What is no number is not settled.
-            unsettled = unsettled | !bound.less(beyond(max)) | !bound.less(beyond(-min));
+            unsettled = unsettled | self.unsettled(r, reach, load, seen(r));
             if !L::any(!unsettled) {
                 break;
             }
@@ -287,22 +283,26 @@ impl FreeRows {
         !unsettled
     }
 
+    /// In which lanes one row can.
+    #[inline(always)]
+    pub fn unsettled<L: Lane>(&self, r: usize, reach: &Reach<L>, load: L, [max, min]: [L; 2]) -> L::Mask {
+        let (bound, floor) = (reach.of(self.row(r)), L::splat(self.rounding[self.kinds[r]]) * load);
+        let beyond = |extreme: L| extreme + L::splat(TOLERANCE) * extreme.magnitude() + floor;
+        // What is no number is not settled.
+        !bound.less(beyond(max)) | !bound.less(beyond(-min))
+    }
+
     /// How far free vibration can exceed what has been seen, in parts of the largest of its kind along the bridge, and
-    /// the row where it is most: twice what `place_of` makes of its number, and one more of the smallest. Zero where that is
-    /// not worth a word.
-    pub fn growth<L: Lane>(
-        &self,
-        reach: &Reach<L>,
-        seen: impl Fn(usize) -> [L; 2],
-        place_of: impl Fn(usize) -> usize,
-    ) -> [L; 2] {
+    /// the row where it is most: twice its number, and one more of the smallest. Zero where that is not worth a word.
+    #[inline(always)]
+    pub fn growth<L: Lane>(&self, reach: &Reach<L>, seen: impl Fn(usize) -> [L; 2]) -> [L; 2] {
         let zero = L::splat(0.0);
         let mut largest = [zero; KINDS];
         for (r, &kind) in self.kinds.iter().enumerate() {
             let [max, min] = seen(r);
             largest[kind] = max.magnitude().larger(min.magnitude()).larger(largest[kind]);
         }
-        let (mut growth, mut place) = (zero, zero);
+        let (mut growth, mut side_of_row) = (zero, zero);
         for (r, &kind) in self.kinds.iter().enumerate() {
             let (bound, [max, min]) = (reach.of(self.row(r)), seen(r));
             for (side, extreme) in [max, -min].into_iter().enumerate() {
@@ -311,10 +311,10 @@ impl FreeRows {
                 let part = excess / largest[kind];
                 let more = !(!least.less(excess) | !growth.less(part));
                 growth = L::select(more, part, growth);
-                place = L::select(more, L::splat((2 * place_of(r) + side) as f64), place);
+                side_of_row = L::select(more, L::splat((2 * r + side) as f64), side_of_row);
             }
         }
-        [growth, place]
+        [growth, side_of_row]
     }
 }
 

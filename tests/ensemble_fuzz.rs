@@ -227,9 +227,10 @@ fn check(case: Case) -> Result<(), TestCaseError> {
         let (march, speed) = (results.marches[sample], samples.speed(sample, 0));
         let path = study.path(found.marches[march as usize]);
         let last = path.steps as f64 + column(results, sample, Column::Tail)[0] * speed / path.advance + 1.0;
+        let hands = found.clock.of(march);
         for &instant in &instants[..2 * layout.responses] {
             let known = match stop_or_step(instant) {
-                Ok(_) => found.clock.when(march, speed, instant).0.is_finite(),
+                Ok(_) => hands.when(speed, instant).0.is_finite(),
                 Err(step) => step as f64 <= last,
             };
             prop_assert!(known, "instant {}", instant);

@@ -5,22 +5,25 @@ mod problems;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use spanwise::analysis::Analysis;
+use spanwise::analysis::{Analysis, Watching};
 use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::{Braking, Drive, Passage};
+use spanwise::crossing::cross_watched;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::simd::Isa;
+use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
+use spanwise::history::History;
 use spanwise::influence::Quantity;
 use spanwise::modal::{ModalDamping, ModalSolve};
 use spanwise::modes::Modes;
 use spanwise::newmark::{Coordinate, Newmark};
 use spanwise::recovery::Recovery;
 use spanwise::settings::{Settings, Tail};
-use spanwise::tail::{LOOK_EVERY, PERIODS, Vibration};
+use spanwise::tail::{LOOK_EVERY, PERIODS, Reach, Vibration, Watch};
 use spanwise::vehicle::Vehicle;
 
 use problems::ensemble::{ALL, SEED, check_alone, mixed, mixed_samples, roads, some};
@@ -158,6 +161,43 @@ fn nothing_comes_after_a_tail_that_ended_by_itself() {
     }
     println!("{settled} of {cases} tails ended by themselves, missed {worst:e} at most; {short_of} maxima came late");
     assert!(settled >= cases / 2 && short_of > 100, "{settled} of {cases}, {short_of}");
+}
+
+/// Looks at all responses each time.
+struct Thorough<'a>(&'a Analysis);
+
+impl Watch for Thorough<'_> {
+    fn enough(
+        &mut self,
+        history: &mut History,
+        reach: &Reach<f64>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Error> {
+        Watching::new(self.0, &self.0.free, [1.0, 1.0]).enough(history, reach, go_on)
+    }
+}
+
+/// To ask one response that can still grow, and all only when it cannot, ends a tail where asking all each time ends it.
+#[test]
+fn a_tail_ends_where_all_responses_say_so() {
+    let (mut looks, mut settled) = (0, 0);
+    for (b, (name, bridge)) in all_arrangements().into_iter().enumerate() {
+        for (v, (vehicle_name, vehicle)) in vehicles().into_iter().enumerate() {
+            let damping = [undamped(), Damping::Ratios(vec![0.01]), Damping::Ratios(vec![0.03])][(b + v) % 3].clone();
+            let (recovery, speed) = (RECOVERIES[v], [12.0, 33.0, 80.0][b % 3]);
+            let found = crossed(&bridge, &vehicle, &damping, recovery, speed, Tail::Free);
+            let settings = Settings { tail: Tail::Free, ..Settings::at_speed(speed) };
+            let (passages, mut watch) = ([Passage::of(vehicle)], Thorough(&found.analysis));
+            let expected =
+                cross_watched(&found.analysis.model, &passages, &settings, &mut watch, &mut || true).unwrap();
+            let history = &found.outcome.history;
+            let what = format!("{name}, {vehicle_name}, {damping:?}, {recovery:?}, {speed} m/s");
+            assert_eq!((history.len(), history.settled), (expected.len(), expected.settled), "{what}");
+            looks += (history.len() - history.last_on) / LOOK_EVERY;
+            settled += usize::from(history.settled);
+        }
+    }
+    assert!(settled > 10 && looks > 100, "{settled} tails ended by themselves, {looks} looks in all");
 }
 
 /// The more a bridge is damped, the shorter is its tail; how long it is does not hang on the step.

@@ -118,17 +118,17 @@ pub fn cross(
         record.numbers[range.start + offset..range.end].iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     };
     let last = history.len() - 1;
-    let [growth, place] = match &history.reach {
+    let [growth, side] = match &history.reach {
         None => [f64::NAN; 2],
         Some(reach) => {
             let seen = |row: usize| {
                 let r = study.free.responses[row];
                 [envelope.dynamic.max[r].value, envelope.dynamic.min[r].value]
             };
-            study.free.growth(&reach.clone().scaled(factors[0], factors[1]), seen, |row| study.look.place(row))
+            study.free.growth(&reach.clone().scaled(factors[0], factors[1]), seen)
         }
     };
-    put(Column::Tail, 0, &mut [history.time[last] - history.ended, growth, place].into_iter());
+    put(Column::Tail, 0, &mut [history.time[last] - history.ended, growth, study.look.side(side)].into_iter());
     let (r, a) = (layout.responses, layout.axles);
     let sides = |extremes: &Extremes| [extremes.max.clone(), extremes.min.clone()];
     for (side, extremes) in sides(&envelope.dynamic).iter().enumerate() {

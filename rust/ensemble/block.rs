@@ -543,6 +543,26 @@ pub fn march<L: Lanes>(
     Ok(seen)
 }
 
+/// How far free vibration can exceed what has been seen, being looked at; not a number where it is not known.
+pub struct Growing<'s, L> {
+    /// The rows.
+    pub free: &'s FreeRows,
+    /// What has been seen.
+    pub seen: &'s Seen<L>,
+}
+
+impl<L: Lane> Work for Growing<'_, L> {
+    type Output = [L; 2];
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        match &self.seen.reach {
+            Some(reach) => self.free.growth(reach, |row| self.seen.reached(row)),
+            None => [L::splat(f64::NAN); 2],
+        }
+    }
+}
+
 /// The roads of a group being drawn.
 pub struct Drawing<'s, L, F> {
     /// What they have in common.

@@ -7,63 +7,76 @@ use super::look::Look;
 use super::stretch::Stretch;
 use super::watch::Watched;
 use crate::lane::Lane;
-use crate::recovery::{Place, Rows, WIDTH};
+use crate::recovery::{Place, Placed, Rows, WIDTH};
 use crate::survey::Watched as Block;
 
 /// Looks for the extremes of every row at the steps of a stretch of one sample; `places` are those of its axles, by step
 /// and axle, none where there is no axle on the bridge.
 pub fn survey<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Look, stretch: &Stretch<L>, places: &[Place]) {
+    let (c, axles) = (stretch.widths.coordinates, if places.is_empty() { 0 } else { stretch.widths.axles });
+    let mut steps = Steps {
+        rows,
+        from: stretch.from,
+        axles,
+        coordinates: Vec::with_capacity(c * stretch.steps),
+        placed: Vec::with_capacity(axles * stretch.steps),
+        blocks: Vec::new(),
+    };
+    for (i, kept) in stretch.taken().enumerate() {
+        steps.coordinates.extend(kept[..c].iter().map(|a| a.get(0)));
+        let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
+        steps.placed.extend(here.map(|(&place, load)| Placed::new(place, load.get(0), 0.0)));
+    }
+    // Rows are in the order of their responses, so that those of one block follow each other.
+    let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
+    let mut all = watched.iter();
+    for rows in of_blocks() {
+        let mut seen = Block::NOTHING;
+        for (row, own) in rows.iter().zip(&mut all) {
+            let i = row.response % WIDTH;
+            (seen.max[i], seen.max_at[i]) = (own.max.get(0), own.max_at.get(0));
+            (seen.min[i], seen.min_at[i]) = (own.min.get(0), own.min_at.get(0));
+        }
+        steps.blocks.push((rows[0].response / WIDTH, seen));
+    }
     // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
-    pulp::Arch::new().dispatch(Walk { watched, rows, look, stretch, places });
+    pulp::Arch::new().dispatch(&mut steps);
+    let mut all = watched.iter_mut();
+    for (rows, (_, seen)) in of_blocks().zip(&steps.blocks) {
+        for (row, own) in rows.iter().zip(&mut all) {
+            let i = row.response % WIDTH;
+            let [max, max_at, min, min_at] = [seen.max, seen.max_at, seen.min, seen.min_at].map(|of| L::splat(of[i]));
+            *own = Watched { max, max_at, min, min_at };
+        }
+    }
 }
 
-struct Walk<'s, L> {
-    watched: &'s mut [Watched<L>],
+/// Steps of one sample made ready, and the extremes of each block in them and before.
+struct Steps<'s> {
     rows: &'s Rows,
-    look: &'s Look,
-    stretch: &'s Stretch<L>,
-    places: &'s [Place],
+    from: usize,
+    /// Those that may be on the bridge.
+    axles: usize,
+    coordinates: Vec<f64>,
+    placed: Vec<Placed>,
+    blocks: Vec<(usize, Block)>,
 }
 
-impl<L: Lane> pulp::WithSimd for Walk<'_, L> {
+impl pulp::WithSimd for &mut Steps<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Walk { watched, rows, look, stretch, places } = self;
-        let (c, axles) = (stretch.widths.coordinates, stretch.widths.axles);
-        // Rows are in the order of their responses, so that those of one block follow each other.
-        let block_of = |row: usize| look.rows[row].response / WIDTH;
-        let mut first = 0;
-        while first < look.rows.len() {
-            let b = block_of(first);
-            let last = (first..look.rows.len()).find(|&row| block_of(row) != b).unwrap_or(look.rows.len());
-            let mut seen = Block::NOTHING;
-            for (row, own) in look.rows[first..last].iter().zip(&watched[first..last]) {
-                let i = row.response % WIDTH;
-                (seen.max[i], seen.max_at[i]) = (own.max.get(0), own.max_at.get(0));
-                (seen.min[i], seen.min_at[i]) = (own.min.get(0), own.min_at.get(0));
-            }
-            let mut number = stretch.from as f64;
-            let mut places = places;
-            for kept in stretch.taken() {
-                let (here, behind) = places.split_at(axles.min(places.len()));
-                places = behind;
-                let coordinates = kept[..c].iter().map(|a| a.get(0));
-                let loads = here.iter().zip(&kept[c..]).map(|(place, load)| (*place, load.get(0)));
-                seen.take(&rows.block_of(b, coordinates, loads), number);
+        let (width, axles) = (self.rows.width(), self.axles);
+        for (b, seen) in &mut self.blocks {
+            // From memory to registers and back as a whole: the compiler takes numbers side by side only so.
+            let mut own = *seen;
+            let mut number = self.from as f64;
+            for (i, coordinates) in self.coordinates.chunks_exact(width).enumerate() {
+                own.take(&self.rows.block_of(*b, coordinates, &self.placed[i * axles..][..axles]), number);
                 number += 1.0;
             }
-            for (row, own) in look.rows[first..last].iter().zip(&mut watched[first..last]) {
-                let i = row.response % WIDTH;
-                *own = Watched {
-                    max: L::splat(seen.max[i]),
-                    max_at: L::splat(seen.max_at[i]),
-                    min: L::splat(seen.min[i]),
-                    min_at: L::splat(seen.min_at[i]),
-                };
-            }
-            first = last;
+            *seen = own;
         }
     }
 }

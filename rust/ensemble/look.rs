@@ -80,9 +80,11 @@ impl Look {
         look
     }
 
-    /// The first of the chosen responses that a row stands for.
-    pub fn place(&self, row: usize) -> usize {
-        self.row_of.iter().position(|&r| r == row).unwrap_or(0)
+    /// Of twice the number of a row, and one more of its smallest: the same by the first of the chosen responses that the
+    /// row stands for.
+    pub fn side(&self, of_row: f64) -> f64 {
+        let place = self.row_of.iter().position(|&row| row == of_row as usize / 2).unwrap_or(0);
+        (2 * place) as f64 + of_row % 2.0
     }
 
     /// Every section and both ends, as [`crate::survey`] looks for their passing.

@@ -1,6 +1,7 @@
 //! The memory that a run takes: its results, and for every worker the geometry of a march and a group of samples on it.
 
 use super::block::KEPT;
+use super::clock::Pace;
 use super::sample::Samples;
 use super::shared::COUPLED;
 use super::simd::SAMPLES;
@@ -30,10 +31,10 @@ impl<'a> Room<'a> {
         results: f64,
     ) -> Result<Self, Error> {
         let mut room = Room { study, threads: workers.threads, each: f64::INFINITY, alike: samples.alike() };
-        // Of every march its stops stay, to tell when they are, and its static extremes.
+        // Of every march its pace stays, and its static extremes, while they are being joined twice.
         let stays = |&(kind, _): &March| {
-            room.of_stops(kind) * (size_of::<(u32, f64, f64)>() as f64 / size_of::<Stop>() as f64)
-                + (16 * study.look.chosen.len()) as f64
+            let axles = study.vehicle(kind).assembly().contacts.len();
+            (size_of::<Pace>() + size_of::<f64>() * (axles + 4 * study.look.chosen.len())) as f64
         };
         let results = results + if study.shares { marches.iter().map(stays).sum::<f64>() } else { 0.0 };
         let least = |march: &March| room.of_march(*march, false);

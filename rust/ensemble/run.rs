@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError, RwLock};
 
 use rayon::prelude::*;
 
-use super::clock::Clock;
+use super::clock::{Clock, Pace};
 use super::record::{Failure, Layout, Record, Results};
 use super::room::Room;
 use super::sample::Samples;
@@ -113,64 +113,65 @@ impl Study {
         let failures = Mutex::new(lost);
         // Read by every crossing under way, written by one that needs the memory to itself.
         let company = RwLock::new(());
-        let work = || {
-            // In order, so that few marches are under way at a time.
-            portions.into_iter().par_bridge().try_for_each(|portion| {
-                let Portion { march, members, mut records, digests } = portion;
-                let mut failed = Vec::new();
-                if let Some(shelf) = shelves.get(march) {
-                    if !go_on() {
-                        return Err(Error::Interrupted);
-                    }
-                    let shared = shelf.take(self, &layout);
-                    let Shared { table, couplings } = &*shared;
-                    let task = Task { study: self, layout, samples, kind: marches[march].0, table, couplings };
-                    let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
-                    let part = Part { task, members, records, failed, go_on };
-                    if table.laid_out {
-                        simd::with(workers.isa, part)?
-                    } else {
-                        part.run::<f64>()?
-                    }
-                    shelf.give_back();
+        let work = |portion: Portion<'_>| {
+            let Portion { march, members, mut records, digests } = portion;
+            let mut failed = Vec::new();
+            if let Some(shelf) = shelves.get(march) {
+                if !go_on() {
+                    return Err(Error::Interrupted);
+                }
+                let shared = shelf.take(self, &layout);
+                let Shared { table, couplings } = &*shared;
+                let task = Task { study: self, layout, samples, kind: marches[march].0, table, couplings };
+                let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
+                let part = Part { task, members, records, failed, go_on };
+                if table.laid_out {
+                    simd::with(workers.isa, part)?
                 } else {
-                    for (&member, record) in members.iter().zip(&mut records) {
-                        let sample = member as usize;
-                        let mut cross = || alone::cross(self, &layout, samples, sample, record, &mut || go_on());
-                        let beside = {
-                            let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
+                    part.run::<f64>()?
+                }
+                shelf.give_back();
+            } else {
+                for (&member, record) in members.iter().zip(&mut records) {
+                    let sample = member as usize;
+                    let mut cross = || alone::cross(self, &layout, samples, sample, record, &mut || go_on());
+                    let beside = {
+                        let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
+                        cross()
+                    };
+                    let crossed = match beside {
+                        // Where there is no room beside others there may be when they have ended.
+                        Err(Error::Memory { .. }) => {
+                            let _by_itself = company.write().unwrap_or_else(PoisonError::into_inner);
                             cross()
-                        };
-                        let crossed = match beside {
-                            // Where there is no room beside others there may be when they have ended.
-                            Err(Error::Memory { .. }) => {
-                                let _by_itself = company.write().unwrap_or_else(PoisonError::into_inner);
-                                cross()
-                            }
-                            beside => beside,
-                        };
-                        match crossed {
-                            Ok(()) => {}
-                            // That there is no memory says nothing of the sample.
-                            Err(cause @ (Error::Interrupted | Error::Memory { .. })) => return Err(cause),
-                            Err(cause) => {
-                                record.forget();
-                                failed.push(Failure { sample, step: cause.step(), cause });
-                            }
+                        }
+                        beside => beside,
+                    };
+                    match crossed {
+                        Ok(()) => {}
+                        // That there is no memory says nothing of the sample.
+                        Err(cause @ (Error::Interrupted | Error::Memory { .. })) => return Err(cause),
+                        Err(cause) => {
+                            record.forget();
+                            failed.push(Failure { sample, step: cause.step(), cause });
                         }
                     }
                 }
-                for (record, digest) in records.iter().zip(digests) {
-                    *digest = record.digest();
-                }
-                if !failed.is_empty() {
-                    failures.lock().unwrap_or_else(|e| e.into_inner()).extend(failed);
-                }
-                progress.done.fetch_add(members.len(), Ordering::Relaxed);
-                if go_on() { Ok(()) } else { Err(Error::Interrupted) }
-            })
+            }
+            for (record, digest) in records.iter().zip(digests) {
+                *digest = record.digest();
+            }
+            if !failed.is_empty() {
+                failures.lock().unwrap_or_else(|e| e.into_inner()).extend(failed);
+            }
+            progress.done.fetch_add(members.len(), Ordering::Relaxed);
+            if go_on() { Ok(()) } else { Err(Error::Interrupted) }
         };
-        threads::pool(working)?.install(work)?;
+        // In order, so that few marches are under way at a time. One thread is this one.
+        match working {
+            1 => portions.into_iter().try_for_each(&work)?,
+            _ => threads::pool(working)?.install(|| portions.into_iter().par_bridge().try_for_each(work))?,
+        }
         results.failures = failures.into_inner().unwrap_or_else(|e| e.into_inner());
         results.failures.sort_by_key(|failure| failure.sample);
         if !self.shares && self.ask_too_much(samples, &results.failures) {
@@ -179,11 +180,13 @@ impl Study {
         if distinct.len() > 1 || lost_rows > 0 {
             put_back(&order, &mut results);
         }
-        let (paces, mut at_rest): (_, Vec<_>) = shelves.into_iter().map(|shelf| shelf.leaves(self, &layout)).unzip();
-        if layout.own_statics {
-            at_rest.clear();
-        }
-        Ok(Run { results, marches, clock: Clock::new(self.settings.tail.seconds(), paces), at_rest })
+        let paces =
+            marches.iter().filter(|_| self.shares).map(|&march| Pace { path: self.path(march), halvings: march.1 });
+        let places = self.look.places.iter().map(|place| place.1).collect();
+        let clock = Clock::new(self.settings.tail.seconds(), places, paces.collect());
+        let shelves = shelves.into_iter().filter(|_| !layout.own_statics);
+        let at_rest = shelves.map(|shelf| shelf.leaves(&layout)).collect();
+        Ok(Run { results, marches, clock, at_rest })
     }
 }
 

@@ -6,7 +6,6 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::clock::Pace;
 use super::record::Layout;
 use super::shared::Couplings;
 use super::table::Table;
@@ -32,8 +31,8 @@ pub struct Shelf {
     shared: Mutex<Option<Arc<Shared>>>,
     /// Portions of its samples that are not done.
     left: AtomicUsize,
-    /// What stays of it: its pace and, if samples share them, its static extremes.
-    stays: OnceLock<(Pace, Vec<f64>)>,
+    /// What stays of it: its static extremes, if samples share them.
+    stays: OnceLock<Vec<f64>>,
 }
 
 impl Shelf {
@@ -50,11 +49,9 @@ impl Shelf {
             return Arc::clone(shared);
         }
         let table = study.table(self.march, self.laid_out);
-        let (kind, halvings) = self.march;
-        self.stays.get_or_init(|| {
-            let at_rest = if layout.own_statics { Vec::new() } else { together::at_rest(study, kind, &table) };
-            (Pace::new(&table.path, &table.stops, halvings), at_rest)
-        });
+        if !layout.own_statics {
+            self.stays.get_or_init(|| together::at_rest(study, self.march.0, &table));
+        }
         Arc::clone(shared.insert(Arc::new(Shared { table, couplings: OnceLock::new() })))
     }
 
@@ -65,9 +62,8 @@ impl Shelf {
         }
     }
 
-    /// The pace, and the static extremes, largest of all responses and then smallest; nothing where no sample came.
-    pub fn leaves(self, study: &Study, layout: &Layout) -> (Pace, Vec<f64>) {
-        let nothing = || (Pace::new(&study.path(self.march), &[], self.march.1), vec![f64::NAN; 2 * layout.responses]);
-        self.stays.into_inner().unwrap_or_else(nothing)
+    /// Static extremes, largest of all responses and then smallest; not numbers where no sample came.
+    pub fn leaves(self, layout: &Layout) -> Vec<f64> {
+        self.stays.into_inner().unwrap_or_else(|| vec![f64::NAN; 2 * layout.responses])
     }
 }

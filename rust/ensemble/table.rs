@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::look::Look;
 use crate::influence::Responses;
 use crate::path::{ModeShapes, Pavement, Share};
@@ -100,7 +102,7 @@ impl Stop {
 }
 
 /// How axles move in equal steps of space.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
     /// Front axle at the start [m].
     pub start: f64,
@@ -341,40 +343,71 @@ impl Table {
     }
 }
 
-/// Every passing of a section or an end, as [`crate::survey`] looks for them.
-pub fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec<Stop> {
-    let last = rows.mesh().panels();
-    let places = &look.places;
-    let axles = path.behind.len();
-    let mut stops = Vec::with_capacity(2 * axles * places.len());
-    let mut ahead: Vec<usize> =
-        (0..axles).map(|axle| places.partition_point(|place| place.1 <= path.x(0, axle))).collect();
+/// An axle on a section or on an end of the bridge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passing {
+    /// The step at whose end it has been passed.
+    pub step: usize,
+    /// The axle.
+    pub axle: usize,
+    /// Which of the places.
+    pub place: usize,
+    /// How far through that step.
+    pub fraction: f64,
+    /// Position of the front axle [m].
+    pub position: f64,
+}
+
+/// Stops of a passing: as the axle comes, and as it goes.
+pub const SIDES: usize = 2;
+
+/// Every passing of some places [m], in order.
+pub fn passings(path: &Advance, places: &[f64]) -> Vec<Passing> {
     // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
-    let last_step = path.steps + usize::from(path.beyond > 0);
-    for step in 1..=last_step {
-        for (axle, ahead) in ahead.iter_mut().enumerate() {
-            while let Some(&(node, at, asked)) = places.get(*ahead).filter(|place| place.1 <= path.x(step, axle)) {
-                *ahead += 1;
-                let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
-                let fraction = (at - from) / (to - from);
-                let left = node.checked_sub(1).map(|panel| (panel, 1.0));
-                let right = (node < last).then_some((node, 0.0));
-                let end = node == 0 || node == last;
-                let held = !end || responses.supported(node);
-                for (side, row) in [(left, step - 1), (right, step)] {
-                    stops.push(Stop {
-                        step,
-                        fraction,
-                        axle,
-                        side,
-                        jump: (!held).then_some(row),
-                        asked,
-                        tip: (end && side.is_some()).then(|| look.tips[usize::from(node != 0)]).flatten(),
-                        position: path.between(step, fraction, 0),
-                    });
-                }
+    let last = path.steps + usize::from(path.beyond > 0);
+    let mut passings = Vec::with_capacity(path.behind.len() * places.len());
+    for axle in 0..path.behind.len() {
+        for (place, &at) in places.iter().enumerate() {
+            // The first step at whose end the axle is not before the place; where it starts it does not pass.
+            let (mut step, mut end) = (0, last + 1);
+            while step < end {
+                let middle = step + (end - step) / 2;
+                if path.x(middle, axle) < at { step = middle + 1 } else { end = middle }
             }
+            if step == 0 || step > last {
+                continue;
+            }
+            let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
+            let fraction = (at - from) / (to - from);
+            let position = path.between(step, fraction, 0);
+            passings.push(Passing { step, axle, place, fraction, position });
         }
     }
-    stops
+    passings.sort_unstable_by_key(|passing| (passing.step, passing.axle, passing.place));
+    passings
+}
+
+/// Every passing of a section or an end, as [`crate::survey`] looks for them, on both sides.
+fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec<Stop> {
+    let last = rows.mesh().panels();
+    let at: Vec<f64> = look.places.iter().map(|place| place.1).collect();
+    let of = |Passing { step, axle, place, fraction, position }: Passing| {
+        let (node, _, asked) = look.places[place];
+        let left = node.checked_sub(1).map(|panel| (panel, 1.0));
+        let right = (node < last).then_some((node, 0.0));
+        let end = node == 0 || node == last;
+        let held = !end || responses.supported(node);
+        let sides: [_; SIDES] = [(left, step - 1), (right, step)];
+        sides.map(|(side, row)| Stop {
+            step,
+            fraction,
+            axle,
+            side,
+            jump: (!held).then_some(row),
+            asked,
+            tip: (end && side.is_some()).then(|| look.tips[usize::from(node != 0)]).flatten(),
+            position,
+        })
+    };
+    passings(path, &at).into_iter().flat_map(of).collect()
 }

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::alone::{Scaled, passages};
-use super::block::{Bridge, Drawing, Ends, Group, Scratch, Seen, Steppers, Trouble, Way, march, rest};
+use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
 use super::shared::{Couplings, Shared};
@@ -110,7 +110,7 @@ struct Marched<L> {
     seen: Seen<L>,
     /// Of the static responses, if they differ from sample to sample.
     at_rest: Option<Seen<L>>,
-    /// How far free vibration can exceed it, and where.
+    /// How far free vibration can exceed it, and where: see [`crate::tail::FreeRows::growth`].
     growth: [L; 2],
     /// The last step of each.
     last: L,
@@ -330,10 +330,7 @@ impl Task<'_> {
             let loads: Vec<L> = (0..table.axles()).map(of).collect();
             rest(&way, &loads)
         });
-        let growth = match &seen.reach {
-            Some(reach) => study.free.growth(reach, |row| seen.reached(row), |row| study.look.place(row)),
-            None => [L::splat(f64::NAN); 2],
-        };
+        let growth = L::dispatch(Growing { free: &study.free, seen: &seen });
         Ok(Marched { seen, at_rest, growth, last: group.ends.last })
     }
 
@@ -383,8 +380,8 @@ impl Task<'_> {
             Tail::Fixed(tail) => tail,
             Tail::Free => (last.get(lane) - self.table.path.steps as f64) * h,
         };
-        let [growth, place] = growth.map(|each| each.get(lane));
-        record.numbers[start..start + 3].copy_from_slice(&[tail, growth, place]);
+        let [growth, side] = growth.map(|each| each.get(lane));
+        record.numbers[start..start + 3].copy_from_slice(&[tail, growth, look.side(side)]);
         let ride = &seen.ride;
         let count = (self.table.path.steps + 1 - self.table.first) as f64;
         let column = |column: Column| layout.range(column).start;

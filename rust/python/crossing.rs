@@ -181,7 +181,7 @@ impl Crossing {
     fn growth(&self) -> f64 {
         let analysis::Outcome { history, envelope: Envelope { dynamic, .. }, .. } = &self.outcome;
         let seen = |r: usize| [dynamic.max[r].value, dynamic.min[r].value];
-        let of = |reach| self.analysis.free.growth(reach, seen, |row| row)[0];
+        let of = |reach| self.analysis.free.growth(reach, seen)[0];
         history.reach.as_ref().map_or(f64::NAN, of)
     }
 

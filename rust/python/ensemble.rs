@@ -15,9 +15,10 @@ use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, p
 use super::road::PyRoad;
 use super::vehicle::{PyBody, PyVehicle, parts_of};
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
+use crate::analysis::Analysis;
 use crate::course::Passage;
 use crate::ensemble::clock;
-use crate::ensemble::record::{Column, Layout, fingerprint as fingerprint_of};
+use crate::ensemble::record::{Column, Failure, Layout, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
 use crate::ensemble::{Run, Study, Workers, alone};
 use crate::error::Error;
@@ -38,17 +39,20 @@ type PyFactors<'py> = (String, usize, PyReadonlyArray1<'py, f64>);
 /// What a run of samples leaves.
 #[pyclass(frozen, module = "spanwise._core")]
 pub struct Ensemble {
-    study: Study,
+    analysis: Arc<Analysis>,
+    shares: bool,
     quantities: Vec<Quantity>,
     workers: Workers,
-    /// Without the numbers, instants and digests, which are Python's.
-    run: Run,
     layout: Layout,
     hash: u64,
     elapsed: f64,
+    failures: Vec<Failure>,
     numbers: Py<PyArray2<f64>>,
     instants: Py<PyArray2<u32>>,
     digests: Py<PyArray1<u64>>,
+    marches: Py<PyArray1<u32>>,
+    at_rest: Py<PyArray2<f64>>,
+    clock: Py<Clock>,
 }
 
 #[pymethods]
@@ -95,24 +99,24 @@ impl Ensemble {
     /// Whether the samples share the geometry.
     #[getter]
     fn shares(&self) -> bool {
-        self.study.shares
+        self.shares
     }
 
     #[getter]
     fn sections<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.study.analysis.sections.clone().into_pyarray(py)
+        self.analysis.sections.clone().into_pyarray(py)
     }
 
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        self.study.analysis.modes.omega.clone().into_pyarray(py)
+        self.analysis.modes.omega.clone().into_pyarray(py)
     }
 
     /// How many responses each kind has that is looked at, in their order.
     #[getter]
     fn widths(&self) -> Vec<(String, usize)> {
         let width = |&(name, quantity): &(&str, Quantity)| {
-            let range = self.study.analysis.responses.range(quantity);
+            let range = self.analysis.responses.range(quantity);
             (name.to_string(), range.len())
         };
         QUANTITIES.iter().filter(|(_, quantity)| self.quantities.contains(quantity)).map(width).collect()
@@ -144,28 +148,27 @@ impl Ensemble {
     /// Static extremes, largest and then smallest of all responses, in a row for each kind of march; none if samples have
     /// their own.
     #[getter]
-    fn at_rest<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
-        let width = 2 * self.layout.responses;
-        rows(py, self.run.at_rest.concat(), width)
+    fn at_rest(&self, py: Python<'_>) -> Py<PyArray2<f64>> {
+        self.at_rest.clone_ref(py)
     }
 
     /// The kind of march of each sample.
     #[getter]
-    fn marches<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        self.run.results.marches.clone().into_pyarray(py)
+    fn marches(&self, py: Python<'_>) -> Py<PyArray1<u32>> {
+        self.marches.clone_ref(py)
     }
 
     /// Sample, step and cause of every failure.
     #[getter]
     fn failures(&self) -> Vec<(usize, Option<usize>, String)> {
-        let all = self.run.results.failures.iter();
+        let all = self.failures.iter();
         all.map(|failure| (failure.sample, failure.step, failure.cause.to_string())).collect()
     }
 
     /// What the instants mean.
     #[getter]
-    fn clock(&self) -> Clock {
-        Clock(self.run.clock.clone())
+    fn clock(&self, py: Python<'_>) -> Py<Clock> {
+        self.clock.clone_ref(py)
     }
 }
 
@@ -210,13 +213,17 @@ impl Clock {
         let [times, positions] = interruptible(py, |go_on| {
             let mut times = Array2::zeros(instants.dim());
             let mut positions = Array2::zeros(instants.dim());
+            let mut hands = self.0.of(0);
             for (row, instants) in instants.rows().into_iter().enumerate() {
                 if !go_on() {
                     return Err(Error::Interrupted);
                 }
                 let speed = speeds[if speeds.len() == 1 { 0 } else { row }];
+                if hands.march != marches[row] {
+                    hands = self.0.of(marches[row]);
+                }
                 for (column, &instant) in instants.iter().enumerate() {
-                    (times[[row, column]], positions[[row, column]]) = self.0.when(marches[row], speed, instant);
+                    (times[[row, column]], positions[[row, column]]) = hands.when(speed, instant);
                 }
             }
             Ok([times, positions])
@@ -392,7 +399,7 @@ pub fn ensemble<'py>(
     };
     let started = Instant::now();
     let solved = Arc::clone(&bridge.0);
-    let (study, quantities, mut run) = attended(py, count, progress.as_ref(), move |told| {
+    let (analysis, shares, quantities, run) = attended(py, count, progress.as_ref(), move |told| {
         let mut go_on = || !told.stop.load(Ordering::Relaxed);
         let own = own_road.map(|(roughness, waviness, band, patch, period, seed)| {
             let spectrum = Spectrum::new(roughness, waviness, band)?;
@@ -401,23 +408,27 @@ pub fn ensemble<'py>(
         let analysis = solved.analysis(asked, &mut go_on)?;
         let study = Study::new(analysis, kinds, settings, own.transpose()?, advance, &quantities)?;
         let run = study.run(&samples, &workers, told)?;
-        Ok((study, quantities, run))
+        Ok((study.analysis, study.shares, quantities, run))
     })?;
     let elapsed = started.elapsed().as_secs_f64();
-    let (hash, layout) = (run.results.hash(), run.results.layout);
-    let numbers = std::mem::take(&mut run.results.numbers).into_pyarray(py).reshape([count, layout.width()])?;
-    let instants = std::mem::take(&mut run.results.instants).into_pyarray(py).reshape([count, layout.instants()])?;
-    let digests = std::mem::take(&mut run.results.digests).into_pyarray(py);
+    let Run { results, clock, at_rest, .. } = run;
+    let (hash, layout) = (results.hash(), results.layout);
+    let numbers = results.numbers.into_pyarray(py).reshape([count, layout.width()])?;
+    let instants = results.instants.into_pyarray(py).reshape([count, layout.instants()])?;
     Ok(Ensemble {
-        study,
+        analysis,
+        shares,
         quantities,
         workers,
-        run,
         layout,
         hash,
         elapsed,
+        failures: results.failures,
         numbers: numbers.unbind(),
         instants: instants.unbind(),
-        digests: digests.unbind(),
+        digests: results.digests.into_pyarray(py).unbind(),
+        marches: results.marches.into_pyarray(py).unbind(),
+        at_rest: rows(py, at_rest.concat(), 2 * layout.responses)?.unbind(),
+        clock: Py::new(py, Clock(clock))?,
     })
 }

@@ -256,6 +256,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 "{name}, sample {sample}, {what} {at}: {value}, {expected}"
             );
         };
+        let hands = run.clock.of(number);
         let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
         let values = column(results, sample, Column::Responses);
         let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
@@ -270,7 +271,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                 [(dynamic.max[r], at_rest.max[r]), (dynamic.min[r], at_rest.min[r])].into_iter().enumerate()
             {
                 let at = side * layout.responses + place;
-                let (time, position) = run.clock.when(number, speed, instants[at]);
+                let (time, position) = hands.when(speed, instants[at]);
                 // Cut short, the last step is rounded before or after the factors of the bridge.
                 let cut = alone.stiffness != 1.0 && study.settings.tail.seconds() > Some(0.0);
                 if cut && alone.history.time.last() == Some(&time) {
@@ -299,7 +300,8 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
             let r = study.free.responses[row];
             [alone.envelope.dynamic.max[r].value, alone.envelope.dynamic.min[r].value]
         };
-        let expected = study.free.growth(&reach, seen, |row| study.look.place(row));
+        let [most, side] = study.free.growth(&reach, seen);
+        let expected = [most, study.look.side(side)];
         if alone.stiffness == 1.0 {
             same("growth", 0, growth, expected[0]);
             same("place of growth", 0, growing, expected[1]);
@@ -312,7 +314,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
             for (side, extreme) in sides.into_iter().enumerate() {
                 let at = side * layout.axles + k;
                 same("load of axle", k, loads[at], extreme.value);
-                let (time, position) = run.clock.when(number, speed, instants[2 * layout.responses + at]);
+                let (time, position) = hands.when(speed, instants[2 * layout.responses + at]);
                 same("time of load", k, time, extreme.time);
                 same("place of load", k, position, extreme.position);
             }
