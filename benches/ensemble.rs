@@ -12,8 +12,8 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_grou
 use problems::ensemble::{SEED, headline, isas, one, run, samples, synthesis};
 use pulp::{Simd, WithSimd};
 use spanwise::ensemble::block::Drawing;
-use spanwise::ensemble::simd::{InLanes, Lanes, SAMPLES, Work, with};
 use spanwise::lane::Lane;
+use spanwise::lane::dispatch::{InLanes, Lanes, Work, with};
 use spanwise::road::random::Synthesis;
 
 /// Crossings per measurement.
@@ -32,8 +32,8 @@ fn crossings(c: &mut Criterion) {
             b.iter(|| run(&study, &samples, isa, threads));
         });
     }
-    group.throughput(Throughput::Elements(SAMPLES as u64));
     for (name, isa) in isas() {
+        group.throughput(Throughput::Elements(isa.samples() as u64));
         let roads = Synthesised { synthesis: &synthesis };
         group.bench_function(BenchmarkId::new("roads", name), |b| b.iter(|| with(isa, roads)));
     }

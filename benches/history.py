@@ -27,7 +27,7 @@ HISTORY = ROOT / "benches" / "history.csv"
 CRITERION = ROOT / "target" / "criterion"
 SHARES = ROOT / "target" / "tmp" / "share.json"
 
-INSTRUCTION_SETS = ("scalar", "avx2", "avx512")
+INSTRUCTION_SETS = ("baseline", "avx2", "avx512")
 
 COLUMNS = 4
 

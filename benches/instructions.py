@@ -38,7 +38,7 @@ class Case:
 
 
 CASES = (
-    Case("ensemble/kishan_1973/modes=3/scalar", "scalar", 2),
+    Case("ensemble/kishan_1973/modes=3/baseline", "baseline", 2),
     Case("ensemble/kishan_1973/modes=3/avx2", "avx2", 2),
     Case("crossing/kishan_1973/modes=3", "crossing", 4),
     Case("ensemble/kinds of one sample", "kinds", 8),

@@ -17,7 +17,7 @@ use spanwise::assembly::Friction;
 use spanwise::course::Passage;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::sample::Samples;
-use spanwise::ensemble::simd::{Isa, SAMPLES};
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::settings::Settings;
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
     let Some((_, isa)) = isas().into_iter().find(|(name, _)| name == case) else {
         return ExitCode::from(ABSENT);
     };
-    let samples = samples(count * SAMPLES);
+    let samples = samples(count * isa.samples());
     black_box(run(&study, &samples, isa, 1));
     println!("{}", samples.count);
     ExitCode::SUCCESS

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use spanwise::ensemble::block::Drawing;
-use spanwise::ensemble::simd::{InLanes, Isa, Lanes, SAMPLES, with};
+use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
@@ -24,7 +24,7 @@ impl InLanes for Draw<'_> {
         let mut road: Vec<L> = Vec::new();
         let start = Instant::now();
         for block in 0..blocks {
-            let sample = |lane: usize| SAMPLES as u64 * block + lane as u64;
+            let sample = |lane: usize| (L::SAMPLES as u64) * block + lane as u64;
             L::dispatch(Drawing { synthesis, seed: 7, sample, road: &mut road });
             black_box(&mut road);
         }
@@ -38,12 +38,13 @@ fn roads(c: &mut Criterion) {
         let spectrum = Spectrum::new(64e-6, 2.0, [0.01, 4.0]).unwrap();
         let synthesis = Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(period)).unwrap();
         for isa in Isa::present() {
+            let side_by_side = isa.samples() as u64;
             let id = BenchmarkId::new(format!("points={}", synthesis.points()), isa.name());
             group.bench_function(id, |b| {
                 b.iter_custom(|samples| {
-                    let blocks = samples.div_ceil(SAMPLES as u64);
+                    let blocks = samples.div_ceil(side_by_side);
                     let taken = with(isa, Draw { synthesis: &synthesis, blocks });
-                    taken.mul_f64(samples as f64 / (blocks * SAMPLES as u64) as f64)
+                    taken.mul_f64(samples as f64 / (blocks * side_by_side) as f64)
                 });
             });
         }

@@ -16,7 +16,6 @@ pub mod run;
 pub mod sample;
 pub mod shared;
 pub mod shelf;
-pub mod simd;
 pub mod stretch;
 pub mod survey;
 pub mod table;

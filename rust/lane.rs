@@ -1,9 +1,11 @@
 //! What the time step computes with: one `f64`, or several samples side by side.
 
 pub mod bits;
+pub mod dispatch;
+mod pack;
 pub mod wide;
 #[cfg(target_arch = "x86_64")]
-pub mod x86;
+mod x86;
 
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 

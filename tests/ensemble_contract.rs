@@ -13,8 +13,8 @@ use spanwise::course::Passage;
 use spanwise::damping::Damping;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{BLOCK, Study};
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
@@ -22,7 +22,7 @@ use spanwise::vehicle::{Axle, Vehicle};
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
 /// and some samples alone.
 fn check_ways(study: &Study, samples: &Samples, alone: &[usize]) {
-    let reference = run(study, samples, Isa::Scalar, 1).results;
+    let reference = run(study, samples, Isa::Baseline, 1).results;
     assert!(reference.failures.is_empty(), "{:?}", reference.failures);
     for isa in Isa::present() {
         for threads in [1, 2, 7] {
@@ -112,7 +112,7 @@ fn a_sample_is_a_crossing() {
     let study = headline();
     let speeds: Vec<f64> = (0..9).map(|i| 15.0 + 3.0 * f64::from(i)).collect();
     let samples = Samples { speeds, ..Samples::at_speed(100, 9, 1.0) };
-    check_alone(&study, &samples, &run(&study, &samples, Isa::Scalar, 1), "headline");
+    check_alone(&study, &samples, &run(&study, &samples, Isa::Baseline, 1), "headline");
 }
 
 /// One of each sort: massless axles that rub and slide, unsprung masses with all kinds of friction, damped tyres, two
@@ -244,7 +244,7 @@ fn dampers_are_weak_in_long_steps_only() {
     let study = Study::new(analysis, kinds, Settings::at_speed(1.0), None, Some(0.2), &ALL).unwrap();
     let samples = Samples { speeds: (0..33).map(|i| 6.0 + 40.0 * spread(i)).collect(), ..samples(33) };
     check_ways(&study, &samples, &[0, 1, 2, 3]);
-    check_alone(&study, &samples, &run(&study, &samples, Isa::Scalar, 1), "weak dampers");
+    check_alone(&study, &samples, &run(&study, &samples, Isa::Baseline, 1), "weak dampers");
 }
 
 /// Nothing of a study of vehicles that go their own ways depends on the work either.
@@ -260,7 +260,7 @@ fn several_vehicles_are_a_crossing_each() {
     let samples = Samples { kinds, ..Samples::at_speed(3, 10, SPEED) };
     check_ways(&study, &samples, &[0, 1, 9]);
     // The second kind alone shares its geometry: the extremes are the same.
-    let found = run(&study, &samples, Isa::Scalar, 2);
+    let found = run(&study, &samples, Isa::Baseline, 2);
     let one = alone(&study, &samples, 1, found_advance(&study)).unwrap();
     let values = column(&found.results, 1, Column::Responses);
     for (place, &r) in study.look.chosen.iter().enumerate() {

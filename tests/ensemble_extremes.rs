@@ -14,8 +14,8 @@ use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, stop_or_step};
 use spanwise::ensemble::sample::Samples;
-use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::settings::{Settings, Tail};
@@ -95,7 +95,7 @@ fn no_extreme_in_the_tail_is_that_of_a_neighbour() {
                 let together = run(&study, &samples, isa, 1).results;
                 for sample in 0..samples.count {
                     let own = some(&samples, sample..sample + 1);
-                    let alone = run(&study, &own, Isa::Scalar, 1).results;
+                    let alone = run(&study, &own, Isa::Baseline, 1).results;
                     assert_eq!(
                         alone.digests[0], together.digests[sample],
                         "{recovery:?}, {seconds} s, sample {sample}"
@@ -106,7 +106,7 @@ fn no_extreme_in_the_tail_is_that_of_a_neighbour() {
                 check_alone(
                     &study,
                     &samples,
-                    &run(&study, &samples, Isa::Scalar, 1),
+                    &run(&study, &samples, Isa::Baseline, 1),
                     &format!("{recovery:?} {seconds} s"),
                 );
             }

@@ -8,9 +8,9 @@ use problems::vehicles::{half_car, leaf};
 use spanwise::course::Passage;
 use spanwise::ensemble::record::{Failure, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
 use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
@@ -37,9 +37,9 @@ fn samples(parameter: Parameter, width: usize, good: f64, bad: f64) -> Samples {
 
 /// Runs samples of which some fail, in every way; the others must not feel it.
 fn check(study: &Study, bad: &Samples, good: &Samples) -> Vec<Failure> {
-    let untouched = run(study, good, Isa::Scalar, 1).results;
+    let untouched = run(study, good, Isa::Baseline, 1).results;
     assert!(untouched.failures.is_empty(), "{:?}", untouched.failures);
-    let reference = run(study, bad, Isa::Scalar, 1).results;
+    let reference = run(study, bad, Isa::Baseline, 1).results;
     let failed: Vec<usize> = reference.failures.iter().map(|failure| failure.sample).collect();
     assert_eq!(failed, BAD);
     for isa in Isa::present() {
@@ -158,7 +158,7 @@ fn crossings_one_by_one_tell_the_step() {
     let study = Study::new(analysis, vec![vec![passage]], settings, None, None, &ALL).unwrap();
     assert!(!study.shares);
     let samples = samples(Parameter::BodyMass, 4, 1.0, 1e6);
-    let results = run(&study, &samples, Isa::Scalar, 2).results;
+    let results = run(&study, &samples, Isa::Baseline, 2).results;
     assert_eq!(results.failures.iter().map(|failure| failure.sample).collect::<Vec<_>>(), BAD);
     for failure in results.failures {
         let Error::NoConvergence { step, time, .. } = failure.cause else { panic!("{:?}", failure.cause) };
@@ -182,7 +182,7 @@ fn samples_that_would_take_too_long() {
             let speeds = (0..COUNT).map(|i| if BAD.contains(&i) { bad } else { 20.0 }).collect();
             Samples { speeds, ..Samples::at_speed(11, COUNT, 1.0) }
         };
-        let (marked, whole) = (run(&study, &with(1e-5), Isa::Scalar, 2), run(&study, &with(20.0), Isa::Scalar, 1));
+        let (marked, whole) = (run(&study, &with(1e-5), Isa::Baseline, 2), run(&study, &with(20.0), Isa::Baseline, 1));
         assert!(whole.results.failures.is_empty(), "{:?}", whole.results.failures);
         let failed: Vec<usize> = marked.results.failures.iter().map(|failure| failure.sample).collect();
         assert_eq!(failed, BAD);

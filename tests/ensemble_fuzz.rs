@@ -16,8 +16,8 @@ use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, stop_or_step};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::settings::{Settings, Tail};
@@ -193,7 +193,7 @@ fn check(case: Case) -> Result<(), TestCaseError> {
             return Ok(());
         }
     };
-    let again = run(Isa::Scalar, 1, 32).unwrap();
+    let again = run(Isa::Baseline, 1, 32).unwrap();
     prop_assert_eq!(found.results.hash(), again.results.hash());
     prop_assert_eq!(&found.results.failures, &again.results.failures);
     let (results, layout) = (&found.results, found.results.layout);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::process::Command;
 
 use problems::ensemble::{headline, run, samples};
-use spanwise::ensemble::simd::Isa;
+use spanwise::lane::dispatch::Isa;
 
 /// Products of whole vectors in the steps and in the recovery, at least; with AVX2 each has some eight hundred.
 const PRODUCTS: usize = 300;
@@ -58,7 +58,7 @@ fn compiled() -> BTreeMap<String, Counts> {
 /// largest of these functions, steps and recovery, for libraries may fuse where they dispatch by the same means.
 fn march(of: &str, width: usize) -> Counts {
     // So that the march is linked into this program.
-    assert!(run(&headline(), &samples(1), Isa::Scalar, 1).results.failures.is_empty());
+    assert!(run(&headline(), &samples(1), Isa::Baseline, 1).results.failures.is_empty());
     let mut all: Vec<Counts> =
         compiled().into_iter().filter(|(name, _)| name.contains(of)).map(|(_, counts)| counts).collect();
     all.sort_by_key(|counts| std::cmp::Reverse(counts.products[width]));

@@ -15,8 +15,8 @@ use spanwise::ensemble::Run;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
 use spanwise::influence::Quantity;
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::{Axle, Vehicle};
@@ -103,7 +103,7 @@ fn statistics_are_those_of_the_history() {
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
     let settings = Settings { tail: Tail::Fixed(0.3), ..approach() };
     let study = Study::new(analysis, vec![vec![Passage::of(forces)]], settings, None, None, &ALL).unwrap();
-    let found = run(&study, &samples(3), Isa::Scalar, 1).results;
+    let found = run(&study, &samples(3), Isa::Baseline, 1).results;
     assert_eq!(found.layout.bodies, 0);
     assert!(column(&found, 1, Column::LoadCoefficients).iter().all(|&v| v == 0.0));
 }
@@ -168,7 +168,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                     _ => made(stiffer(1.0, 0.02 * value, recovery), heavier(1.0)),
                 };
                 let one = Samples::at_speed(3 + sample as u64, 1, 20.0);
-                let Run { results: own, at_rest: own_at_rest, .. } = run(&built, &one, Isa::Scalar, 1);
+                let Run { results: own, at_rest: own_at_rest, .. } = run(&built, &one, Isa::Baseline, 1);
                 let near = |what: &str, found: &[f64], expected: &[f64]| {
                     let off = problems::largest_difference(found, expected) / largest_magnitude(expected);
                     assert!(off <= TWICE, "{recovery:?}, {parameter:?} {value}, {what}: {off:e}");
@@ -256,7 +256,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
                 |run: &spanwise::ensemble::Run, sample: usize| run.marches[run.results.marches[sample] as usize].1;
             assert!((0..count).any(|sample| halved(&found, sample) > 0), "{name}: nobody is slow");
             for sample in 0..count {
-                let own = run(&study, &some(&samples, sample..sample + 1), Isa::Scalar, 1);
+                let own = run(&study, &some(&samples, sample..sample + 1), Isa::Baseline, 1);
                 assert_eq!(halved(&own, 0), halved(&found, sample), "{name}, sample {sample}");
                 let way = study.path(found.marches[found.results.marches[sample] as usize]).advance;
                 let (taken, limit) = (way / samples.speed(sample, 0), stability_limit(&study, &samples, sample));

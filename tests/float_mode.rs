@@ -16,9 +16,9 @@ use spanwise::bridge::{Bridge, Stations};
 use spanwise::course::Passage;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::simd::Isa;
 use spanwise::float_mode::Standard;
 use spanwise::influence::Quantity;
+use spanwise::lane::dispatch::Isa;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::settings::{Settings, Tail};
@@ -127,7 +127,7 @@ fn ensembles_do_not_depend_on_the_mode_of_the_caller() {
         let found = run(&study, &samples, isa, threads);
         (found.results.hash(), found.at_rest)
     };
-    let expected = made(Isa::Scalar, 1);
+    let expected = made(Isa::Baseline, 1);
     for other in MODES {
         for isa in Isa::present() {
             for threads in [1, 2] {
@@ -143,9 +143,9 @@ fn ensembles_do_not_depend_on_the_mode_of_the_caller() {
 #[test]
 fn runs_do_not_depend_on_the_mode_of_the_caller() {
     let (study, samples) = (mixed(), mixed_samples(0, 12));
-    let expected = run(&study, &samples, Isa::Scalar, 1);
+    let expected = run(&study, &samples, Isa::Baseline, 1);
     for other in MODES {
-        let (found, left) = in_mode(other, || run(&study, &samples, Isa::Scalar, 2));
+        let (found, left) = in_mode(other, || run(&study, &samples, Isa::Baseline, 2));
         assert_eq!(found.results.hash(), expected.results.hash(), "{other:#x}");
         assert_eq!(found.clock, expected.clock);
         assert_eq!(found.marches, expected.marches);

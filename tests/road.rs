@@ -4,11 +4,11 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 use spanwise::ensemble::block::Drawing;
-use spanwise::ensemble::simd::{InLanes, Isa, Lanes, with};
 use spanwise::error::Error;
 use spanwise::lane::Lane;
-use spanwise::lane::bits::{Bits, WideBits};
-use spanwise::lane::wide::Wide;
+use spanwise::lane::bits::Bits;
+use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
+use spanwise::lane::wide::{Wide, WideBits};
 use spanwise::road::feature::Feature;
 use spanwise::road::fft::InverseFft;
 use spanwise::road::golden_car;

@@ -13,11 +13,11 @@ use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::ensemble::simd::Isa;
 use spanwise::error::Error;
 use spanwise::flexibility::Flexibility;
 use spanwise::history::History;
 use spanwise::influence::Quantity;
+use spanwise::lane::dispatch::Isa;
 use spanwise::modal::{ModalDamping, ModalSolve};
 use spanwise::modes::Modes;
 use spanwise::newmark::{Coordinate, Newmark};
@@ -353,7 +353,7 @@ fn samples(count: usize) -> Samples {
 fn each_sample_has_its_own_tail() {
     for recovery in RECOVERIES {
         let (study, samples) = (study(recovery, Drive::ConstantSpeed, &ALL), samples(21));
-        let reference = problems::ensemble::run(&study, &samples, Isa::Scalar, 1);
+        let reference = problems::ensemble::run(&study, &samples, Isa::Baseline, 1);
         check_alone(&study, &samples, &reference, &format!("{recovery:?}"));
         for isa in Isa::present() {
             for (threads, chunk) in [(1, 32), (2, 5), (2, 1)] {
@@ -368,7 +368,7 @@ fn each_sample_has_its_own_tail() {
         distinct.dedup();
         assert!(distinct.len() > samples.count / 2, "{lengths:?}");
         for i in [0, 7, 20] {
-            let own = problems::ensemble::run(&study, &some(&samples, i..i + 1), Isa::Scalar, 1).results;
+            let own = problems::ensemble::run(&study, &some(&samples, i..i + 1), Isa::Baseline, 1).results;
             assert_eq!(own.digests[0], reference.results.digests[i], "{recovery:?}, sample {i}");
         }
     }

@@ -4,7 +4,6 @@ use super::block::KEPT;
 use super::clock::Pace;
 use super::sample::Samples;
 use super::shared::COUPLED;
-use super::simd::SAMPLES;
 use super::table::{Below, CHUNK, PARTS, READY, Stop};
 use super::{March, Study, Workers};
 use crate::error::Error;
@@ -16,6 +15,8 @@ pub struct Room<'a> {
     study: &'a Study,
     /// Threads, no more than asked for.
     pub threads: usize,
+    /// Samples that a worker marches side by side.
+    side_by_side: usize,
     /// For each of them [bytes].
     each: f64,
     alike: bool,
@@ -30,7 +31,13 @@ impl<'a> Room<'a> {
         workers: &Workers,
         results: f64,
     ) -> Result<Self, Error> {
-        let mut room = Room { study, threads: workers.threads, each: f64::INFINITY, alike: samples.alike() };
+        let mut room = Room {
+            study,
+            threads: workers.threads,
+            side_by_side: workers.isa.samples(),
+            each: f64::INFINITY,
+            alike: samples.alike(),
+        };
         // Of every march its pace stays, and its static extremes, while they are being joined twice.
         let stays = |&(kind, _): &March| {
             let axles = study.vehicle(kind).assembly().contacts.len();
@@ -102,6 +109,6 @@ impl<'a> Room<'a> {
     /// Bytes that a worker takes in any case: its stack, the steps that a group keeps, and their roads.
     fn of_worker(&self) -> f64 {
         let road = self.study.own.as_ref().map_or(0, |(own, _)| 2 * own.points());
-        memory::THREAD + (size_of::<f64>() * SAMPLES * (2 * KEPT + road)) as f64
+        memory::THREAD + (size_of::<f64>() * self.side_by_side * (2 * KEPT + road)) as f64
     }
 }

@@ -11,11 +11,11 @@ use super::record::{Failure, Layout, Record, Results};
 use super::room::Room;
 use super::sample::Samples;
 use super::shelf::{FEW, Shared, Shelf};
-use super::simd::{self, InLanes, Isa, SAMPLES};
 use super::together::{Part, Task};
 use super::{March, Study, alone};
 use crate::error::Error;
 use crate::float_mode::Standard;
+use crate::lane::dispatch::{InLanes, Isa, with};
 use crate::memory;
 use crate::threads;
 
@@ -101,7 +101,8 @@ impl Study {
         };
         // A few portions for every thread, in whole groups of lanes.
         let working = threads::of_use(room.threads, count);
-        let share = count.div_ceil(4 * working).next_multiple_of(SAMPLES).max(SAMPLES);
+        let side_by_side = workers.isa.samples();
+        let share = count.div_ceil(4 * working).next_multiple_of(side_by_side).max(side_by_side);
         let chunk = workers.chunk.unwrap_or(share.min(BLOCK));
         let shelf = |(&march, members): (&March, &Vec<u32>)| {
             Shelf::new(march, members.len() > FEW && room.lays_out(march), members.len().div_ceil(chunk))
@@ -126,7 +127,7 @@ impl Study {
                 let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
                 let part = Part { task, members, records, failed, go_on };
                 if table.laid_out {
-                    simd::with(workers.isa, part)?
+                    with(workers.isa, part)?
                 } else {
                     part.run::<f64>()?
                 }

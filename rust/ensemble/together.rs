@@ -7,12 +7,12 @@ use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Stepper
 use super::record::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
 use super::shared::{Couplings, Shared};
-use super::simd::{InLanes, Lanes};
 use super::table::Table;
 use super::watch::Watched;
 use super::{Kind, Study};
 use crate::error::Error;
 use crate::lane::Lane;
+use crate::lane::dispatch::{InLanes, Lanes};
 use crate::modal::ModalDamping;
 use crate::settings::{Settings, Tail};
 use crate::step::{Moving, Propulsion, Scheme, Stepper, Unsettled};

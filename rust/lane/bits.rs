@@ -2,6 +2,9 @@
 
 /// One number of 64 bits per sample.
 pub trait Bits: Copy {
+    /// Number of samples.
+    const SAMPLES: usize;
+
     /// The same number for every sample.
     fn splat(value: u64) -> Self;
 
@@ -37,6 +40,8 @@ pub trait Bits: Copy {
 }
 
 impl Bits for u64 {
+    const SAMPLES: usize = 1;
+
     #[inline(always)]
     fn splat(value: u64) -> Self {
         value
@@ -90,72 +95,5 @@ impl Bits for u64 {
     #[inline(always)]
     fn spread(self) -> Self {
         ((self as i64) >> 63) as u64
-    }
-}
-
-/// One number of 64 bits for each of N samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(align(64))]
-pub struct WideBits<const N: usize>(pub(super) [u64; N]);
-
-/// What is done to one number, done to each.
-macro_rules! each {
-    ($($method:ident),*) => {
-        $(
-            #[inline(always)]
-            fn $method(mut self, other: Self) -> Self {
-                for i in 0..N {
-                    self.0[i] = self.0[i].$method(other.0[i]);
-                }
-                self
-            }
-        )*
-    };
-}
-
-impl<const N: usize> Bits for WideBits<N> {
-    each!(plus, and, or, xor, times);
-
-    #[inline(always)]
-    fn splat(value: u64) -> Self {
-        WideBits([value; N])
-    }
-
-    #[inline(always)]
-    fn from_fn(value: impl Fn(usize) -> u64) -> Self {
-        let mut wide = Self::splat(0);
-        for i in 0..N {
-            wide.0[i] = value(i);
-        }
-        wide
-    }
-
-    #[inline(always)]
-    fn get(&self, sample: usize) -> u64 {
-        self.0[sample]
-    }
-
-    #[inline(always)]
-    fn up(mut self, bits: u32) -> Self {
-        for i in 0..N {
-            self.0[i] <<= bits;
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn down(mut self, bits: u32) -> Self {
-        for i in 0..N {
-            self.0[i] >>= bits;
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn spread(mut self) -> Self {
-        for i in 0..N {
-            self.0[i] = self.0[i].spread();
-        }
-        self
     }
 }

@@ -6,7 +6,7 @@
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::Lane;
-use super::bits::WideBits;
+use super::bits::Bits;
 
 /// One number for each of N samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,5 +179,74 @@ impl<const N: usize> Lane for Wide<N> {
     #[inline(always)]
     fn from_bits(bits: WideBits<N>) -> Self {
         Wide(bits.0.map(f64::from_bits))
+    }
+}
+
+/// One number of 64 bits for each of N samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(align(64))]
+pub struct WideBits<const N: usize>([u64; N]);
+
+/// What is done to one number, done to each.
+macro_rules! each {
+    ($($method:ident),*) => {
+        $(
+            #[inline(always)]
+            fn $method(mut self, other: Self) -> Self {
+                for i in 0..N {
+                    self.0[i] = self.0[i].$method(other.0[i]);
+                }
+                self
+            }
+        )*
+    };
+}
+
+impl<const N: usize> Bits for WideBits<N> {
+    const SAMPLES: usize = N;
+
+    each!(plus, and, or, xor, times);
+
+    #[inline(always)]
+    fn splat(value: u64) -> Self {
+        WideBits([value; N])
+    }
+
+    #[inline(always)]
+    fn from_fn(value: impl Fn(usize) -> u64) -> Self {
+        let mut wide = Self::splat(0);
+        for i in 0..N {
+            wide.0[i] = value(i);
+        }
+        wide
+    }
+
+    #[inline(always)]
+    fn get(&self, sample: usize) -> u64 {
+        self.0[sample]
+    }
+
+    #[inline(always)]
+    fn up(mut self, bits: u32) -> Self {
+        for i in 0..N {
+            self.0[i] <<= bits;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn down(mut self, bits: u32) -> Self {
+        for i in 0..N {
+            self.0[i] >>= bits;
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn spread(mut self) -> Self {
+        for i in 0..N {
+            self.0[i] = self.0[i].spread();
+        }
+        self
     }
 }

@@ -1,66 +1,79 @@
-//! Eight samples side by side in the vector registers of x86-64 processors: two of AVX2, or one of AVX-512.
+//! One vector register of an x86-64 processor: four numbers of AVX2, or eight of AVX-512.
 //!
-//! They may be used only on a processor that has the instructions, which [`with`] sees to; and the compiler keeps them in
-//! registers only in work done under [`Lanes::dispatch`].
+//! Safe code cannot name these lanes: it gets them from [`with`], which looks first whether the processor has them. The
+//! compiler keeps them in registers only in work done under [`Lanes::dispatch`].
 //!
-//! [`with`]: crate::ensemble::simd::with
-//! [`Lanes::dispatch`]: crate::ensemble::simd::Lanes::dispatch
+//! [`with`]: super::dispatch::with
 
-// Only here: the processor's instructions are out of the reach of safe code, unless it is compiled for them. They take
-// and return numbers, and touch no memory; registers and arrays of the same size are the same bits.
+// Only here: the processor's instructions are out of the reach of safe code, unless it is compiled for them.
 #![allow(unsafe_code)]
+#![warn(clippy::undocumented_unsafe_blocks)]
 
 use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
+use pulp::NullaryFnOnce;
+
 use super::Lane;
 use super::bits::Bits;
+use super::dispatch::{Lanes, Work};
+use super::pack::Pack;
 
-/// Samples side by side.
-const N: usize = 8;
+/// Eight numbers in two registers of AVX2.
+pub type Avx2 = Pack<Four, 2>;
 
-/// One kind of lanes, of so many registers each: the names of the instructions, and how masks are kept.
-macro_rules! lanes {
+/// Eight numbers in one register of AVX-512.
+pub type Avx512 = Eight;
+
+/// An instruction that takes and returns numbers.
+macro_rules! on {
+    ($instruction:expr) => {
+        // SAFETY: these instructions touch no memory, and run only where `with` found that the processor has them: no other
+        // way leads to the lanes of this file, which is private.
+        unsafe { $instruction }
+    };
+}
+
+/// The same bits as another type.
+macro_rules! as_bits {
+    ($value:expr, $from:ty => $to:ty) => {
+        // SAFETY: a register and an array of its numbers have the same size, and all bits are valid in both.
+        unsafe { transmute::<$from, $to>($value) }
+    };
+}
+
+/// One kind of register: its types, the names of its instructions, and how its masks are kept.
+macro_rules! register {
     (
-        $(#[$doc:meta])* $lanes:ident, $mask:ident, $bits:ident: $registers:literal of $vector:ty, $masks:ty, $words:ty;
+        $(#[$doc:meta])* $lanes:ident, $mask:ident, $bits:ident: $samples:literal in $vector:ty, $masks:ty, $words:ty;
         $add:ident $sub:ident $mul:ident $div:ident $max:ident $min:ident $splat:ident $cast:ident $back:ident;
         $plus:ident $and:ident $or:ident $xor:ident $times:ident $up:ident $down:ident $fill:ident;
-        $less:expr, $select:expr, $full:expr, $either:expr, $not:expr, $negative:expr
+        $less:expr, $select:expr, $either:expr, $not:expr, $any:expr
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy)]
-        pub struct $lanes([$vector; $registers]);
+        pub struct $lanes($vector);
 
         /// Which of the samples.
         #[derive(Debug, Clone, Copy)]
-        pub struct $mask([$masks; $registers]);
+        pub struct $mask($masks);
 
         /// One number of 64 bits for each of the samples.
         #[derive(Debug, Clone, Copy)]
-        pub struct $bits([$words; $registers]);
+        pub struct $bits($words);
 
-        lanes!(operator $lanes Add add $add $registers);
-        lanes!(operator $lanes Sub sub $sub $registers);
-        lanes!(operator $lanes Mul mul $mul $registers);
-        lanes!(operator $lanes Div div $div $registers);
-
-        impl $lanes {
-            #[inline(always)]
-            fn sign() -> $words {
-                unsafe { $fill(i64::MIN) }
-            }
-        }
+        register!(operator $lanes Add add $add);
+        register!(operator $lanes Sub sub $sub);
+        register!(operator $lanes Mul mul $mul);
+        register!(operator $lanes Div div $div);
 
         impl Neg for $lanes {
             type Output = Self;
 
             #[inline(always)]
-            fn neg(mut self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $back($xor($cast(self.0[i]), Self::sign())) };
-                }
-                self
+            fn neg(self) -> Self {
+                $lanes(on!($back($xor($cast(self.0), $fill(i64::MIN)))))
             }
         }
 
@@ -68,11 +81,8 @@ macro_rules! lanes {
             type Output = Self;
 
             #[inline(always)]
-            fn bitor(mut self, other: Self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = $either(self.0[i], other.0[i]);
-                }
-                self
+            fn bitor(self, other: Self) -> Self {
+                $mask($either(self.0, other.0))
             }
         }
 
@@ -80,11 +90,8 @@ macro_rules! lanes {
             type Output = Self;
 
             #[inline(always)]
-            fn not(mut self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = $not(self.0[i]);
-                }
-                self
+            fn not(self) -> Self {
+                $mask($not(self.0))
             }
         }
 
@@ -93,43 +100,35 @@ macro_rules! lanes {
 
             type Bits = $bits;
 
-            const SAMPLES: usize = N;
+            const SAMPLES: usize = $samples;
 
             #[inline(always)]
             fn splat(value: f64) -> Self {
-                $lanes([unsafe { $splat(value) }; $registers])
+                $lanes(on!($splat(value)))
             }
 
             #[inline(always)]
             fn from_fn(value: impl Fn(usize) -> f64) -> Self {
-                let mut numbers = [0.0; N];
+                let mut numbers = [0.0; $samples];
                 for (i, number) in numbers.iter_mut().enumerate() {
                     *number = value(i);
                 }
-                $lanes(unsafe { transmute::<[f64; N], [$vector; $registers]>(numbers) })
+                $lanes(as_bits!(numbers, [f64; $samples] => $vector))
             }
 
             #[inline(always)]
             fn get(&self, sample: usize) -> f64 {
-                let numbers = unsafe { transmute::<[$vector; $registers], [f64; N]>(self.0) };
-                numbers[sample]
+                as_bits!(self.0, $vector => [f64; $samples])[sample]
             }
 
             #[inline(always)]
             fn less(self, other: Self) -> $mask {
-                let mut mask = $mask([$full; $registers]);
-                for i in 0..$registers {
-                    mask.0[i] = $less(self.0[i], other.0[i]);
-                }
-                mask
+                $mask($less(self.0, other.0))
             }
 
             #[inline(always)]
-            fn select(mask: $mask, mut yes: Self, no: Self) -> Self {
-                for i in 0..$registers {
-                    yes.0[i] = $select(mask.0[i], yes.0[i], no.0[i]);
-                }
-                yes
+            fn select(mask: $mask, yes: Self, no: Self) -> Self {
+                $lanes($select(mask.0, yes.0, no.0))
             }
 
             #[inline(always)]
@@ -139,36 +138,23 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn any(mask: $mask) -> bool {
-                let mut any = mask.0[0];
-                for other in mask.0.into_iter().skip(1) {
-                    any = $either(any, other);
-                }
-                $negative(any)
+                $any(mask.0)
             }
 
             // The instructions return the second number unless the first is the larger, or smaller.
             #[inline(always)]
-            fn larger(mut self, other: Self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $max(self.0[i], other.0[i]) };
-                }
-                self
+            fn larger(self, other: Self) -> Self {
+                $lanes(on!($max(self.0, other.0)))
             }
 
             #[inline(always)]
-            fn smaller(mut self, other: Self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $min(self.0[i], other.0[i]) };
-                }
-                self
+            fn smaller(self, other: Self) -> Self {
+                $lanes(on!($min(self.0, other.0)))
             }
 
             #[inline(always)]
-            fn magnitude(mut self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $back($and($cast(self.0[i]), $fill(i64::MAX))) };
-                }
-                self
+            fn magnitude(self) -> Self {
+                $lanes(on!($back($and($cast(self.0), $fill(i64::MAX)))))
             }
 
             #[inline(always)]
@@ -178,125 +164,127 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn to_bits(self) -> $bits {
-                let mut bits = $bits::splat(0);
-                for i in 0..$registers {
-                    bits.0[i] = unsafe { $cast(self.0[i]) };
-                }
-                bits
+                $bits(on!($cast(self.0)))
             }
 
             #[inline(always)]
             fn from_bits(bits: $bits) -> Self {
-                let mut lanes = Self::splat(0.0);
-                for i in 0..$registers {
-                    lanes.0[i] = unsafe { $back(bits.0[i]) };
-                }
-                lanes
+                $lanes(on!($back(bits.0)))
             }
         }
 
         impl Bits for $bits {
-            lanes!(each $registers plus $plus, and $and, or $or, xor $xor, times $times);
+            const SAMPLES: usize = $samples;
+
+            register!(each plus $plus, and $and, or $or, xor $xor, times $times);
 
             #[inline(always)]
             fn splat(value: u64) -> Self {
-                $bits([unsafe { $fill(value as i64) }; $registers])
+                $bits(on!($fill(value as i64)))
             }
 
             #[inline(always)]
             fn from_fn(value: impl Fn(usize) -> u64) -> Self {
-                let mut numbers = [0; N];
+                let mut numbers = [0; $samples];
                 for (i, number) in numbers.iter_mut().enumerate() {
                     *number = value(i);
                 }
-                $bits(unsafe { transmute::<[u64; N], [$words; $registers]>(numbers) })
+                $bits(as_bits!(numbers, [u64; $samples] => $words))
             }
 
             #[inline(always)]
             fn get(&self, sample: usize) -> u64 {
-                let numbers = unsafe { transmute::<[$words; $registers], [u64; N]>(self.0) };
-                numbers[sample]
+                as_bits!(self.0, $words => [u64; $samples])[sample]
             }
 
             #[inline(always)]
-            fn up(mut self, bits: u32) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $up(self.0[i], $fill(i64::from(bits))) };
-                }
-                self
+            fn up(self, bits: u32) -> Self {
+                $bits(on!($up(self.0, $fill(i64::from(bits)))))
             }
 
             #[inline(always)]
-            fn down(mut self, bits: u32) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $down(self.0[i], $fill(i64::from(bits))) };
-                }
-                self
+            fn down(self, bits: u32) -> Self {
+                $bits(on!($down(self.0, $fill(i64::from(bits)))))
             }
 
             // Zero less the highest bit, moved to the lowest place.
             #[inline(always)]
-            fn spread(mut self) -> Self {
-                let highest = self.down(63);
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $plus($xor(highest.0[i], $fill(-1)), $fill(1)) };
-                }
-                self
+            fn spread(self) -> Self {
+                $bits(on!($plus($xor(self.down(63).0, $fill(-1)), $fill(1))))
             }
         }
     };
-    (operator $lanes:ident $trait:ident $method:ident $instruction:ident $registers:literal) => {
+    (operator $lanes:ident $trait:ident $method:ident $instruction:ident) => {
         impl $trait for $lanes {
             type Output = Self;
 
             #[inline(always)]
-            fn $method(mut self, other: Self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $instruction(self.0[i], other.0[i]) };
-                }
-                self
+            fn $method(self, other: Self) -> Self {
+                $lanes(on!($instruction(self.0, other.0)))
             }
         }
     };
-    (each $registers:literal $($method:ident $instruction:ident),*) => {
+    (each $($method:ident $instruction:ident),*) => {
         $(
             #[inline(always)]
-            fn $method(mut self, other: Self) -> Self {
-                for i in 0..$registers {
-                    self.0[i] = unsafe { $instruction(self.0[i], other.0[i]) };
-                }
-                self
+            fn $method(self, other: Self) -> Self {
+                Self(on!($instruction(self.0, other.0)))
             }
         )*
     };
 }
 
-lanes! {
-    /// Numbers in two registers of AVX2.
-    Avx2, Avx2Mask, Avx2Bits: 2 of __m256d, __m256d, __m256i;
+register! {
+    /// Four numbers in a register of AVX2.
+    Four, FourMask, FourBits: 4 in __m256d, __m256d, __m256i;
     _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_max_pd _mm256_min_pd _mm256_set1_pd
     _mm256_castpd_si256 _mm256_castsi256_pd;
     _mm256_add_epi64 _mm256_and_si256 _mm256_or_si256 _mm256_xor_si256 _mm256_mul_epu32 _mm256_sllv_epi64
     _mm256_srlv_epi64 _mm256_set1_epi64x;
-    |a, b| unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(a, b) },
-    |mask, yes, no| unsafe { _mm256_blendv_pd(no, yes, mask) },
-    unsafe { _mm256_castsi256_pd(_mm256_set1_epi64x(-1)) },
-    |a, b| unsafe { _mm256_or_pd(a, b) },
-    |a| unsafe { _mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi64x(-1))) },
-    |a| unsafe { _mm256_movemask_pd(a) } != 0
+    |a, b| on!(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)),
+    |mask, yes, no| on!(_mm256_blendv_pd(no, yes, mask)),
+    |a, b| on!(_mm256_or_pd(a, b)),
+    |a| on!(_mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))),
+    |a| on!(_mm256_movemask_pd(a)) != 0
 }
 
-lanes! {
-    /// Numbers in one register of AVX-512.
-    Avx512, Avx512Mask, Avx512Bits: 1 of __m512d, __mmask8, __m512i;
+register! {
+    /// Eight numbers in a register of AVX-512.
+    Eight, EightMask, EightBits: 8 in __m512d, __mmask8, __m512i;
     _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_max_pd _mm512_min_pd _mm512_set1_pd
     _mm512_castpd_si512 _mm512_castsi512_pd;
     _mm512_add_epi64 _mm512_and_si512 _mm512_or_si512 _mm512_xor_si512 _mm512_mul_epu32 _mm512_sllv_epi64
     _mm512_srlv_epi64 _mm512_set1_epi64;
-    |a, b| unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b) },
-    |mask, yes, no| unsafe { _mm512_mask_blend_pd(mask, no, yes) },
-    0xFF,
+    |a, b| on!(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b)),
+    |mask, yes, no| on!(_mm512_mask_blend_pd(mask, no, yes)),
     |a: __mmask8, b: __mmask8| a | b,
     |a: __mmask8| !a,
     |a: __mmask8| a != 0
 }
+
+/// Work as pulp wants it.
+struct Compiled<W>(W);
+
+impl<W: Work> NullaryFnOnce for Compiled<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn call(self) -> W::Output {
+        self.0.run()
+    }
+}
+
+/// Compiles work for an instruction set, whose token says that the processor has it.
+macro_rules! dispatch {
+    ($lanes:ty, $token:ty) => {
+        impl Lanes for $lanes {
+            fn dispatch<W: Work>(work: W) -> W::Output {
+                // SAFETY: as for the instructions themselves.
+                unsafe { <$token>::new_unchecked() }.vectorize(Compiled(work))
+            }
+        }
+    };
+}
+
+dispatch!(Avx2, pulp::x86::V3);
+dispatch!(Avx512, pulp::x86::V4);

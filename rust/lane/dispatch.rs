@@ -1,13 +1,13 @@
 //! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
 
-use crate::error::Error;
-use crate::lane::Lane;
-use crate::lane::wide::Wide;
+use super::Lane;
+use super::wide::Wide;
 #[cfg(target_arch = "x86_64")]
-use crate::lane::x86::{Avx2, Avx512};
+use super::x86::{Avx2, Avx512};
+use crate::error::Error;
 
-/// Samples side by side in one group of lanes.
-pub const SAMPLES: usize = 8;
+/// Lanes that any processor has: eight numbers, which the compiler keeps in the registers there are.
+type Baseline = Wide<8>;
 
 /// The environment variable that chooses another than the widest.
 pub const VARIABLE: &str = "SPANWISE_ISA";
@@ -16,7 +16,7 @@ pub const VARIABLE: &str = "SPANWISE_ISA";
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Isa {
     /// What every processor of its kind has: on x86-64 SSE2, on AArch64 NEON.
-    Scalar,
+    Baseline,
     /// AVX2.
     Avx2,
     /// AVX-512.
@@ -27,12 +27,12 @@ pub enum Isa {
 
 impl Isa {
     /// All of them, from the narrowest to the widest.
-    pub const ALL: [Isa; 4] = [Isa::Scalar, Isa::Neon, Isa::Avx2, Isa::Avx512];
+    pub const ALL: [Isa; 4] = [Isa::Baseline, Isa::Neon, Isa::Avx2, Isa::Avx512];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
-            Isa::Scalar => "scalar",
+            Isa::Baseline => "baseline",
             Isa::Avx2 => "avx2",
             Isa::Avx512 => "avx512",
             Isa::Neon => "neon",
@@ -42,7 +42,7 @@ impl Isa {
     /// Whether this processor has it.
     pub fn is_present(self) -> bool {
         match self {
-            Isa::Scalar => true,
+            Isa::Baseline => true,
             #[cfg(target_arch = "x86_64")]
             Isa::Avx2 => pulp::x86::V3::try_new().is_some(),
             #[cfg(target_arch = "x86_64")]
@@ -58,13 +58,28 @@ impl Isa {
     pub fn chosen() -> Result<Self, Error> {
         match std::env::var(VARIABLE) {
             Ok(name) if !name.is_empty() => Isa::named(&name),
-            _ => Ok(Isa::present().last().unwrap_or(Isa::Scalar)),
+            _ => Ok(Isa::present().last().unwrap_or(Isa::Baseline)),
         }
     }
 
     /// Those that the processor has, from the narrowest to the widest.
     pub fn present() -> impl Iterator<Item = Self> {
         Isa::ALL.into_iter().filter(|isa| isa.is_present())
+    }
+
+    /// Samples that are marched side by side.
+    pub fn samples(self) -> usize {
+        struct Count;
+
+        impl InLanes for Count {
+            type Output = usize;
+
+            fn run<L: Lanes>(self) -> usize {
+                L::SAMPLES
+            }
+        }
+
+        with(self, Count)
     }
 
     fn named(name: &str) -> Result<Self, Error> {
@@ -85,17 +100,6 @@ pub trait Work {
     fn run(self) -> Self::Output;
 }
 
-struct Compiled<W>(W);
-
-impl<W: Work> pulp::NullaryFnOnce for Compiled<W> {
-    type Output = W::Output;
-
-    #[inline(always)]
-    fn call(self) -> W::Output {
-        self.0.run()
-    }
-}
-
 /// Lanes that work is done in.
 pub trait Lanes: Lane {
     /// Does the work with the instruction set that these lanes are made for, which the processor must have.
@@ -114,36 +118,58 @@ impl<const N: usize> Lanes for Wide<N> {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-impl Lanes for Avx2 {
-    fn dispatch<W: Work>(work: W) -> W::Output {
-        pulp::x86::V3::try_new().expect("this processor has AVX2").vectorize(Compiled(work))
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Lanes for Avx512 {
-    fn dispatch<W: Work>(work: W) -> W::Output {
-        pulp::x86::V4::try_new().expect("this processor has AVX-512").vectorize(Compiled(work))
-    }
-}
-
 /// Something to be done in lanes yet to be chosen.
 pub trait InLanes {
     /// What comes of it.
     type Output;
 
-    /// Does it in these, [`SAMPLES`] side by side.
+    /// Does it in these.
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Does something in the lanes of an instruction set, or in plain ones where the processor does not have it.
+/// Does something in the lanes of an instruction set, or in those of any processor where this one does not have it.
+///
+/// It is the only way to the lanes of an instruction set, so that safe code cannot reach an instruction that the processor
+/// lacks. They have no name outside:
+///
+/// ```compile_fail
+/// #![forbid(unsafe_code)]
+/// use spanwise::lane::{Lane, x86::Avx512};
+/// assert_eq!(Avx512::splat(1.0).get(0), 1.0);
+/// ```
+///
+/// where those of any processor have one:
+///
+/// ```
+/// #![forbid(unsafe_code)]
+/// use spanwise::lane::{Lane, wide::Wide};
+/// assert_eq!(Wide::<8>::splat(1.0).get(0), 1.0);
+/// ```
+///
+/// and what is done in lanes cannot bring them out, for it does not know which they are:
+///
+/// ```compile_fail
+/// #![forbid(unsafe_code)]
+/// use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
+///
+/// struct One;
+///
+/// impl InLanes for One {
+///     type Output = impl Lanes;
+///
+///     fn run<L: Lanes>(self) -> Self::Output {
+///         L::splat(1.0)
+///     }
+/// }
+///
+/// with(Isa::Avx512, One);
+/// ```
 pub fn with<T: InLanes>(isa: Isa, what: T) -> T::Output {
     match isa {
         #[cfg(target_arch = "x86_64")]
         Isa::Avx512 if isa.is_present() => what.run::<Avx512>(),
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 if isa.is_present() => what.run::<Avx2>(),
-        _ => what.run::<Wide<SAMPLES>>(),
+        _ => what.run::<Baseline>(),
     }
 }
