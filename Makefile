@@ -36,11 +36,12 @@ example: $(EXTENSION)
 
 test: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked
+	$(CARGO) run --quiet $(PROFILE) --locked --example speeds
 	$(PY) -m pytest
 
 # Random studies by the thousand, other ones each time; every argument with every odd value.
 soak: $(EXTENSION)
-	$(CARGO) test $(PROFILE) --locked --test ensemble_fuzz -- --ignored --nocapture
+	$(CARGO) test $(PROFILE) --locked --test tests -- ensemble_fuzz --ignored --nocapture
 	SPANWISE_SOAK=1 $(PY) -m pytest tests/test_doors.py
 
 # clippy runs in the dev profile: with the settings of maturin in the release

@@ -5,42 +5,58 @@ mod problems;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use problems::vehicles::{articulated, half_car};
-use problems::{kishan_bridge, kishan_vehicle, undamped};
-use spanwise::analysis::Analysis;
-use spanwise::assembly::Friction;
-use spanwise::course::{Direction, Drive, Passage};
-use spanwise::crossing::{cross, cross_all};
-use spanwise::flexibility::Flexibility;
+use problems::{kishan_bridge, kishan_vehicle};
+use spanwise::crossing::analysis::Preparation;
+use spanwise::crossing::cross;
+use spanwise::crossing::extremes::Survey;
+use spanwise::crossing::history::History;
+use spanwise::crossing::tail::Watch;
+use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::recovery::Recovery;
-use spanwise::settings::Settings;
-use spanwise::survey::survey;
+use spanwise::passage::settings::Settings;
+use spanwise::passage::{Direction, Drive, Passage};
+use spanwise::statics::flexibility::Flexibility;
+use spanwise::step::vibration::Reach;
+use spanwise::vehicle::body::Friction;
+
+/// Looks at nothing: steps alone.
+struct Blind;
+
+impl Watch for Blind {
+    fn enough(&mut self, _: &mut History, _: &Reach<f64>, _: &mut dyn FnMut() -> bool) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
 
 fn kishan_1973(c: &mut Criterion) {
     let bridge = kishan_bridge();
     let vehicle = kishan_vehicle();
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let prepare =
-        || Analysis::new(&bridge, modes.clone(), &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
+    let prepare = || Preparation::default().of(&bridge, modes.clone(), &mut || true).unwrap();
     let analysis = prepare();
     let rolling = Settings { drive: Drive::ConstantTraction, step: Some(1e-3), ..Settings::at_speed(22.86) };
     let steady = Settings { drive: Drive::ConstantSpeed, ..rolling.clone() };
-    let go_on = &mut || true;
+    let passages = [Passage::of(vehicle.clone())];
+    let steps = |settings: &Settings| cross(&analysis.model, &passages, settings, &mut Blind, &mut || true).unwrap();
 
     let mut group = c.benchmark_group("crossing/kishan_1973");
     group.bench_function("modes=3", |b| b.iter(|| analysis.cross(&vehicle, &rolling, &mut || true).unwrap()));
     group.bench_function("prepare", |b| b.iter(prepare));
     group.bench_function("steps/constant-traction", |b| {
-        b.iter(|| cross(&analysis.model, &vehicle, &rolling, &mut || true).unwrap());
+        b.iter(|| steps(&rolling));
     });
     group.bench_function("steps/constant-speed", |b| {
-        b.iter(|| cross(&analysis.model, &vehicle, &steady, &mut || true).unwrap());
+        b.iter(|| steps(&steady));
     });
-    let history = cross(&analysis.model, &vehicle, &rolling, go_on).unwrap();
+    let history = steps(&rolling);
     let packed = analysis.rows.pack_history(&history);
     group.bench_function("recovery/pack", |b| b.iter(|| analysis.rows.pack_history(&history)));
     group.bench_function("recovery/extremes", |b| {
-        b.iter(|| survey(&history, &analysis.rows, &packed, &analysis.responses, &mut || true).unwrap());
+        b.iter(|| {
+            let mut survey = Survey::new(&history, &analysis.rows, &analysis.responses);
+            survey.go_on(&history, &packed, &mut || true).unwrap();
+            survey.conclude(&history, &packed)
+        });
     });
     group.bench_function("recovery/histories", |b| {
         b.iter(|| analysis.rows.histories(&packed, 0..analysis.rows.len(), &mut || true).unwrap());
@@ -52,7 +68,7 @@ fn kishan_1973(c: &mut Criterion) {
 fn vehicles(c: &mut Criterion) {
     let bridge = kishan_bridge();
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let analysis = Analysis::new(&bridge, modes, &undamped(), None, Recovery::ForceSummation, &mut || true).unwrap();
+    let analysis = Preparation::default().of(&bridge, modes, &mut || true).unwrap();
     let settings = Settings { step: Some(1e-3), ..Settings::at_speed(22.86) };
     let half_car = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
     let opposing = Passage { direction: Direction::Left, lane: 1, ..Passage::of(half_car.clone()) };
@@ -63,11 +79,11 @@ fn vehicles(c: &mut Criterion) {
     ];
     let mut group = c.benchmark_group("crossing");
     for (name, passages) in cases {
-        let history = cross_all(&analysis.model, &passages, &settings, &mut || true).unwrap();
+        let history = cross(&analysis.model, &passages, &settings, &mut Blind, &mut || true).unwrap();
         println!("{name}: {} steps, {} axles", history.len() - 1, history.axles);
         group.bench_function(name, |b| b.iter(|| analysis.cross_all(&passages, &settings, &mut || true).unwrap()));
         group.bench_function(format!("{name}/steps"), |b| {
-            b.iter(|| cross_all(&analysis.model, &passages, &settings, &mut || true).unwrap());
+            b.iter(|| cross(&analysis.model, &passages, &settings, &mut Blind, &mut || true).unwrap());
         });
     }
     group.finish();

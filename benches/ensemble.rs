@@ -13,7 +13,8 @@ use problems::ensemble::{SEED, headline, isas, one, run, samples, synthesis};
 use pulp::{Simd, WithSimd};
 use spanwise::ensemble::block::Drawing;
 use spanwise::lane::Lane;
-use spanwise::lane::dispatch::{InLanes, Lanes, Work, with};
+use spanwise::lane::dispatch::{InLanes, with};
+use spanwise::lane::{Lanes, Work};
 use spanwise::road::random::Synthesis;
 
 /// Crossings per measurement.

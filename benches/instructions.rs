@@ -10,17 +10,17 @@ mod problems;
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use problems::ensemble::{ALL, SEED, headline, isas, kishan_analysis, run, samples, synthesis};
+use problems::ensemble::{ALL, SEED, headline, isas, kishan_analysis, run, samples, study_of, synthesis};
 use problems::vehicles::half_car;
 use problems::{kishan_settings, kishan_vehicle};
-use spanwise::assembly::Friction;
-use spanwise::course::Passage;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::sample::Samples;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::Settings;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
+use spanwise::vehicle::body::Friction;
 
 /// What the gate takes for: this processor cannot.
 const ABSENT: u8 = 3;
@@ -73,5 +73,5 @@ fn kinds(count: usize) -> Study {
     let road = Road::from(synthesis().road(SEED, 0)).into();
     let settings = Settings { approach: 5.0, road, ..Settings::at_speed(20.0) };
     let kinds = vec![vec![Passage::of(truck)]; count];
-    Study::new(kishan_analysis(25, Recovery::ForceSummation), kinds, settings, None, Some(WAY), &ALL).unwrap()
+    study_of(kishan_analysis(25, Recovery::ForceSummation), kinds, settings, None, Some(WAY), &ALL).unwrap()
 }

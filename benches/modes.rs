@@ -5,8 +5,8 @@ mod problems;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use problems::two_spans;
-use spanwise::flexibility::Flexibility;
 use spanwise::modes::Modes;
+use spanwise::statics::flexibility::Flexibility;
 
 fn modes(c: &mut Criterion) {
     let mut group = c.benchmark_group("modes");

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use spanwise::ensemble::block::Drawing;
-use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
+use spanwise::lane::Lanes;
+use spanwise::lane::dispatch::{InLanes, Isa, with};
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;

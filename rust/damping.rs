@@ -3,8 +3,8 @@
 use faer::{Mat, Side};
 
 use crate::error::{Error, finite, not_negative};
-use crate::modal::ModalDamping;
 use crate::modes::Modes;
+use crate::step::bridge_step::ModalDamping;
 
 /// Viscous damping of the bridge.
 #[derive(Debug, Clone)]

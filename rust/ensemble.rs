@@ -24,17 +24,19 @@ pub mod watch;
 
 use std::sync::Arc;
 
-use crate::analysis::Analysis;
-use crate::assembly::{BuildUp, ContactLaw};
-use crate::course::{Course, Drive, Passage};
+use crate::crossing::analysis::Analysis;
+use crate::crossing::tail::FreeRows;
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
-use crate::influence::Quantity;
-use crate::path::Pavement;
+use crate::geometry::pavement::Pavement;
+use crate::passage::planned::Course;
+use crate::passage::settings::{Settings, Tail};
+use crate::passage::step_length::{MAX_STEPS, Steps};
+use crate::passage::{Drive, Passage};
 use crate::road::random::Synthesis;
-use crate::settings::{Settings, Tail};
-use crate::steps::{MAX_STEPS, Steps};
-use crate::tail::FreeRows;
+use crate::statics::influence::Quantity;
+use crate::vehicle::body::BuildUp;
+use crate::vehicle::equations::ContactLaw;
 use crate::vehicle::{MAX_AXLES, Vehicle};
 use look::Look;
 use record::{Failure, Layout};
@@ -78,18 +80,53 @@ pub struct Study {
 /// How a sample marches: which kind of event, and how often the step is halved.
 pub type March = (usize, u32);
 
-impl Study {
-    /// Of crossings of a bridge by `kinds` of event, with the samples' `own` roads on top of that of the settings, in
-    /// steps of `advance` [m] at most, looking at some quantities.
-    pub fn new(
-        analysis: Arc<Analysis>,
-        kinds: Vec<Vec<Passage>>,
-        settings: Settings,
-        own: Option<(Arc<Synthesis>, u64)>,
-        advance: Option<f64>,
-        quantities: &[Quantity],
-    ) -> Result<Self, Error> {
+/// What a study is to be: crossings of a bridge by kinds of event, on roads that samples share, looking at everything,
+/// unless the user says otherwise.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The bridge.
+    pub analysis: Arc<Analysis>,
+    /// The kinds of event, each with its vehicles.
+    pub kinds: Vec<Vec<Passage>>,
+    /// How they cross; the speed is that of each sample.
+    pub settings: Settings,
+    /// What samples' own random roads have in common, and the seed.
+    pub own: Option<(Arc<Synthesis>, u64)>,
+    /// Longest way per step [m].
+    pub advance: Option<f64>,
+    /// What is looked at.
+    pub quantities: Vec<Quantity>,
+}
+
+impl Plan {
+    /// Crossings by `kinds` of event.
+    pub fn new(analysis: Arc<Analysis>, kinds: Vec<Vec<Passage>>, settings: Settings) -> Self {
+        Plan { analysis, kinds, settings, own: None, advance: None, quantities: Quantity::ALL.to_vec() }
+    }
+
+    /// With a random road of its own for each sample, drawn from the seed and the sample's number, on top of that of the
+    /// settings.
+    pub fn roads(mut self, synthesis: Arc<Synthesis>, seed: u64) -> Self {
+        self.own = Some((synthesis, seed));
+        self
+    }
+
+    /// In steps of this way at most [m].
+    pub fn advance(mut self, advance: f64) -> Self {
+        self.advance = Some(advance);
+        self
+    }
+
+    /// Looking at these quantities.
+    pub fn quantities(mut self, quantities: &[Quantity]) -> Self {
+        self.quantities = quantities.to_vec();
+        self
+    }
+
+    /// The study, if it can be one.
+    pub fn study(self) -> Result<Study, Error> {
         let _mode = Standard::set();
+        let Plan { analysis, kinds, settings, own, advance, quantities } = self;
         settings.check()?;
         if kinds.is_empty() || kinds.iter().any(Vec::is_empty) {
             return Err(Error::input("vehicles", "[]", "at least one vehicle must cross"));
@@ -98,12 +135,12 @@ impl Study {
         let constant = |passage: &Passage| *passage.drive.as_ref().unwrap_or(&settings.drive) == Drive::ConstantSpeed;
         let shares = kinds.iter().all(|passages| match &passages[..] {
             [one] => {
-                let plain = one.direction == crate::course::Direction::Right && one.entry == 0.0 && one.road.is_none();
+                let plain = one.direction == crate::passage::Direction::Right && one.entry == 0.0 && one.road.is_none();
                 plain && constant(one) && one.speed.is_none()
             }
             _ => false,
         });
-        let look = Look::new(&analysis.rows, &analysis.responses, quantities);
+        let look = Look::new(&analysis.rows, &analysis.responses, &quantities);
         if look.chosen.is_empty() {
             return Err(Error::input("quantities", "[]", "at least one response must be looked at"));
         }
@@ -124,7 +161,9 @@ impl Study {
         }
         Ok(study)
     }
+}
 
+impl Study {
     /// Whether a passage has its speed from its drive.
     pub fn brings_speeds(&self, passage: &Passage) -> bool {
         matches!(passage.drive.as_ref().unwrap_or(&self.settings.drive), Drive::Speeds { .. })

@@ -2,6 +2,7 @@
 
 pub mod bits;
 pub mod dispatch;
+pub mod gather;
 mod pack;
 pub mod wide;
 #[cfg(target_arch = "x86_64")]
@@ -77,6 +78,21 @@ pub trait Lane:
     fn magnitude(self) -> Self;
 }
 
+/// A loop that is compiled once for each instruction set.
+pub trait Work {
+    /// What comes of it.
+    type Output;
+
+    /// Goes through it; must be inlined, with all that it calls, or the instruction set is lost.
+    fn run(self) -> Self::Output;
+}
+
+/// Lanes that work is done in.
+pub trait Lanes: Lane {
+    /// Does the work with the instruction set that these lanes are made for, which the processor must have.
+    fn dispatch<W: Work>(work: W) -> W::Output;
+}
+
 impl Lane for f64 {
     type Mask = bool;
 
@@ -129,5 +145,11 @@ impl Lane for f64 {
     #[inline(always)]
     fn from_bits(bits: u64) -> Self {
         f64::from_bits(bits)
+    }
+}
+
+impl Lanes for f64 {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        work.run()
     }
 }

@@ -3,11 +3,11 @@
 use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
+use crate::bridge::cubics::Line;
 use crate::error::Error;
-use crate::flexibility::{Action, Actions, Flexibility, Structure};
 use crate::float_mode::Standard;
-use crate::line::Line;
 use crate::memory;
+use crate::statics::flexibility::{Action, Actions, Flexibility, Structure};
 
 /// Residual and orthogonality demanded of every solve, relative to the largest eigenvalue and to one.
 const TOLERANCE: f64 = 1e-10;

@@ -2,19 +2,20 @@
 //!
 //! KTN73 Eqs. 9–16 are linear in the modal coordinates and the axle loads, so all of them fold into
 //! R = ρ·A + Σ g(x_k) P_k, with ρ_m the response to the static loads MΦΩ² of mode m and
-//! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::sequence`], for reading and for testing.
+//! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::force_summation`], for reading and for testing.
 
 use std::ops::Range;
 
 use faer::Mat;
 
+use crate::bridge::cubics::{Line, Mesh};
+use crate::crossing::history::History;
 use crate::damping::Damping;
 use crate::error::Error;
-use crate::history::History;
-use crate::influence::Responses;
-use crate::line::{Line, Mesh};
-use crate::modal::ModalDamping;
 use crate::modes::Modes;
+use crate::spline::value;
+use crate::statics::influence::Responses;
+use crate::step::bridge_step::ModalDamping;
 
 /// How responses follow from the included modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -291,9 +292,8 @@ impl Rows {
 
     /// Influence of an axle load on a response.
     pub fn influence_of(&self, response: usize, (panel, f): (usize, f64)) -> f64 {
-        let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + response / WIDTH];
-        let i = response % WIDTH;
-        c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))
+        let cubics = &self.lines[panel * self.blocks() + response / WIDTH];
+        value(cubics.map(|each| each[response % WIDTH]), f)
     }
 
     /// Whether two responses have the same row, to the bit.
@@ -356,7 +356,7 @@ impl Rows {
             let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
             let f = axle.fraction;
             for i in 0..WIDTH {
-                let g = c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]));
+                let g = value([c0[i], c1[i], c2[i], c3[i]], f);
                 dynamic[i] += g * axle.load;
                 at_rest[i] += g * axle.static_load;
             }
@@ -384,7 +384,7 @@ impl Rows {
             let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
             let f = axle.fraction;
             for i in 0..WIDTH {
-                values[i] += (c0[i] + f * (c1[i] + f * (c2[i] + f * c3[i]))) * axle.load;
+                values[i] += value([c0[i], c1[i], c2[i], c3[i]], f) * axle.load;
             }
         }
         values

@@ -5,16 +5,17 @@
 //! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness. A vehicle feels it from the [`datum`] of its
 //! way.
 
+pub mod b_spline;
 pub mod datum;
 pub mod feature;
 pub mod fft;
 pub mod golden_car;
 pub mod patch;
 pub mod philox;
+pub mod point;
 pub mod profile;
 pub mod random;
 pub mod spectrum;
-pub mod spline;
 pub mod turn;
 
 use std::sync::Arc;
@@ -23,6 +24,7 @@ use crate::error::{Error, finite};
 use datum::Datum;
 use feature::Feature;
 use patch::Patch;
+use point::Point;
 use profile::Profile;
 use random::Random;
 
@@ -32,17 +34,6 @@ const OF_NYQUIST: f64 = 0.8;
 /// A place, or a millimetre before it at most, in digits that one can write, never −0 [m].
 pub fn down_to_mm(x: f64) -> f64 {
     (1e3 * x).floor() / 1e3 + 0.0
-}
-
-/// Elevation, slope and curvature at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
-    /// Elevation, positive up [m].
-    pub elevation: f64,
-    /// Its derivative with respect to x [-].
-    pub slope: f64,
-    /// Its second derivative with respect to x [1/m].
-    pub curvature: f64,
 }
 
 /// A road surface; copies share their data.

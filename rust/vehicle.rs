@@ -2,9 +2,15 @@
 //!
 //! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
 
-use crate::assembly::{Assembly, BuildUp, ContactLaw, Friction, front_first, positions, prefix};
+pub mod body;
+pub mod dense;
+pub mod equations;
+
 use crate::error::{Error, finite, not_negative, positive};
 use crate::float_mode::Standard;
+use crate::vehicle::body::{Axle, Body, Coupling, Suspension};
+use crate::vehicle::body::{BuildUp, Friction};
+use crate::vehicle::equations::{Assembly, ContactLaw, front_first, positions, prefix};
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;
@@ -15,110 +21,6 @@ pub const MAX_AXLES: usize = 500;
 /// Most bodies of a vehicle, and most springs and hinges between them.
 const MAX_BODIES: usize = 500;
 const MAX_COUPLINGS: usize = 4 * MAX_BODIES;
-
-/// An axle: a tyre below a suspension, with an unsprung mass between them or none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axle {
-    /// Distance ahead of the centre of mass of its body [m].
-    pub position: f64,
-    /// Unsprung mass [kg]; 0 for a massless axle.
-    pub mass: f64,
-    /// Tyre stiffness [N/m].
-    pub tyre_stiffness: f64,
-    /// Tyre damping [N s/m].
-    pub tyre_damping: f64,
-    /// Suspension stiffness [N/m].
-    pub suspension_stiffness: f64,
-    /// Suspension damping [N s/m].
-    pub suspension_damping: f64,
-    /// Friction in the suspension. Beside an unsprung mass a rigid build-up becomes elastic, with
-    /// [`STICK`](crate::assembly::STICK) times the tyre stiffness.
-    pub friction: Friction,
-}
-
-impl Axle {
-    /// Massless, without damping and friction.
-    pub fn new(position: f64, tyre_stiffness: f64, suspension_stiffness: f64) -> Self {
-        Axle {
-            position,
-            mass: 0.0,
-            tyre_stiffness,
-            tyre_damping: 0.0,
-            suspension_stiffness,
-            suspension_damping: 0.0,
-            friction: Friction::NONE,
-        }
-    }
-}
-
-/// The two linear states of suspensions with friction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Suspension {
-    /// Friction holds: of a massless axle the tyre alone is a spring, elsewhere the stick acts beside the spring.
-    Locked,
-    /// They slide: springs alone.
-    Sliding,
-}
-
-/// What joins a body to an earlier one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Coupling {
-    /// A fifth wheel, a drawbar, or the pivot of a bogie that equalises its axle loads.
-    Hinge {
-        /// Index of the earlier body.
-        to: usize,
-        /// Distance ahead of the centre of mass of that body [m].
-        at: f64,
-        /// Distance ahead of the centre of mass of the body that has the hinge [m].
-        own: f64,
-        /// Height above the road [m].
-        height: f64,
-    },
-    /// An upright spring and damper: a secondary suspension.
-    Spring {
-        /// Index of the earlier body.
-        to: usize,
-        /// Distance ahead of the centre of mass of that body [m].
-        at: f64,
-        /// Distance ahead of the centre of mass of the body that has the spring [m].
-        own: f64,
-        /// Stiffness [N/m].
-        stiffness: f64,
-        /// Damping [N s/m].
-        damping: f64,
-        /// Friction beside it. A rigid build-up becomes elastic, with [`STICK`](crate::assembly::STICK) times the
-        /// stiffness of the spring.
-        friction: Friction,
-    },
-}
-
-impl Coupling {
-    /// The earlier body, and where it holds on that one and on its own.
-    pub fn ends(&self) -> (usize, f64, f64) {
-        let (Coupling::Hinge { to, at, own, .. } | Coupling::Spring { to, at, own, .. }) = *self;
-        (to, at, own)
-    }
-
-    /// Whether it is a hinge.
-    pub fn is_hinge(&self) -> bool {
-        matches!(self, Coupling::Hinge { .. })
-    }
-}
-
-/// A rigid body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
-    /// Mass [kg].
-    pub mass: f64,
-    /// Pitch inertia about the centre of mass [kg m²].
-    pub pitch_inertia: f64,
-    /// Height of the centre of mass above the road [m].
-    pub cg_height: f64,
-    /// Axles, front first.
-    pub axles: Vec<Axle>,
-    /// What joins it to earlier bodies: nothing for the first.
-    pub couplings: Vec<Coupling>,
-}
 
 /// A vehicle that stands on its own: every value allowed, every motion held, every axle loaded.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,15 +1,14 @@
 //! Before a vehicle comes on to the bridge it can be marched without one.
 
-mod problems;
-
-use problems::vehicles::half_car;
-use problems::{kishan_vehicle, kishan_vehicle_with_friction};
-use spanwise::assembly::Friction;
-use spanwise::lane::Lane;
-use spanwise::modal::ModalDamping;
-use spanwise::newmark::Coordinate;
-use spanwise::step::{Geometry, Moving, Propulsion, Scheme, State, Stepper, Surface};
+use crate::problems::vehicles::half_car;
+use crate::problems::{kishan_vehicle, kishan_vehicle_with_friction};
+use spanwise::geometry::{Geometry, Surface};
+use spanwise::step::bridge_step::ModalDamping;
+use spanwise::step::newmark::Coordinate;
+use spanwise::step::stepper::{Scheme, State, Stepper};
+use spanwise::step::unit::{Moving, Propulsion};
 use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Friction;
 
 const SPEED: f64 = 20.0;
 const STEP: f64 = 1e-3;
@@ -23,10 +22,6 @@ struct Approach {
 impl Geometry<f64> for Approach {
     fn advance(&mut self) {
         self.step += 1;
-    }
-
-    fn follow(&mut self, _contact: usize, _motion: Coordinate<f64>, _new_step: bool) -> <f64 as Lane>::Mask {
-        f64::never()
     }
 
     fn steady(&self) -> bool {

@@ -1,9 +1,11 @@
 //! The bridge: lumping, supports, and what is refused.
 
-mod problems;
-
-use problems::*;
-use spanwise::bridge::{Bridge, Fixity, MAX_STATIONS, Stations, Support};
+use crate::problems::*;
+use crate::problems::{beam, continuous};
+use spanwise::bridge::Bridge;
+use spanwise::bridge::cubics::MAX_STATIONS;
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::support::{Fixity, Support};
 use spanwise::error::Error;
 
 /// Sums and positions to rounding, relative to the whole.
@@ -19,7 +21,7 @@ fn assert_near(ours: f64, expected: f64, what: &str) {
 
 /// A bridge of 10 m and 20 m, with the given stations.
 fn two_spans(mass: &[f64], stations: &Stations, point_masses: &[(f64, f64)]) -> Result<Bridge, Error> {
-    Bridge::continuous(&[10.0, 20.0], [PINNED; 2], &[1e9], mass, stations, point_masses)
+    continuous(&[10.0, 20.0], [PINNED; 2], &[1e9], mass, stations, point_masses)
 }
 
 fn key(result: Result<Bridge, Error>) -> String {
@@ -68,7 +70,7 @@ fn masses_over_supports_take_no_part() {
     assert_near(total(&bridge), 300.0 * 20.0, "moving mass");
     // On a free end it does move.
     let stations = Stations::At(vec![4.0, 8.0]);
-    let cantilever = Bridge::new(8.0, vec![clamped(0.0)], &[1e9], &[300.0], &stations, &[]).unwrap();
+    let cantilever = beam(8.0, vec![clamped(0.0)], &[1e9], &[300.0], &stations, &[]).unwrap();
     assert_near(cantilever.stations()[1].mass, 300.0 * 2.0, "tip");
     assert_near(total(&cantilever), 300.0 * 8.0, "total mass");
 }
@@ -102,7 +104,7 @@ fn mass_is_conserved() {
 #[test]
 fn spans_supports_and_rigidity() {
     let supports = vec![pinned(20.0), pinned(5.0)];
-    let bridge = Bridge::new(26.0, supports, &[1e9, 2e9, 3e9], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap();
+    let bridge = beam(26.0, supports, &[1e9, 2e9, 3e9], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap();
     assert_eq!(bridge.supports().iter().map(|s| s.at).collect::<Vec<_>>(), [5.0, 20.0]);
     assert_eq!(bridge.span_bounds(), [0.0, 5.0, 20.0, 26.0]);
     for (x, ei) in [(0.0, 1e9), (4.9, 1e9), (5.0, 2e9), (19.9, 2e9), (20.0, 3e9), (26.0, 3e9)] {
@@ -115,14 +117,14 @@ fn spans_supports_and_rigidity() {
     }
     // Supports within rounding of an end stand at the end.
     let nearly = vec![pinned(1e-10), pinned(26.0 + 1e-9)];
-    let bridge = Bridge::new(26.0, nearly, &[1e9], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap();
+    let bridge = beam(26.0, nearly, &[1e9], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap();
     assert_eq!(bridge.span_bounds(), [0.0, 26.0]);
 }
 
 #[test]
 fn a_bridge_that_can_move_as_a_whole_is_refused() {
     for (supports, motion) in [(vec![], "fall"), (vec![pinned(3.0)], "rotate")] {
-        match Bridge::new(10.0, supports, &[1e9], &[1e3], &Stations::PerSpan(vec![2]), &[]) {
+        match beam(10.0, supports, &[1e9], &[1e3], &Stations::PerSpan(vec![2]), &[]) {
             Err(error @ Error::Unstable { .. }) => {
                 assert!(error.is_input() && error.to_string().contains(motion), "{error}");
             }
@@ -134,10 +136,10 @@ fn a_bridge_that_can_move_as_a_whole_is_refused() {
 #[test]
 fn refusals_name_the_argument() {
     let three = || Stations::PerSpan(vec![3]);
-    let on = |supports: Vec<Support>| Bridge::new(10.0, supports, &[1e9], &[1e3], &three(), &[]);
+    let on = |supports: Vec<Support>| beam(10.0, supports, &[1e9], &[1e3], &three(), &[]);
     let ends = || vec![pinned(0.0), pinned(10.0)];
     let simple = |length: f64, ei: &[f64], mass: &[f64], stations: Stations, points: &[(f64, f64)]| {
-        Bridge::new(length, ends(), ei, mass, &stations, points)
+        beam(length, ends(), ei, mass, &stations, points)
     };
     for (expected, result) in [
         ("length", simple(-1.0, &[1e9], &[1e3], three(), &[])),
@@ -168,22 +170,22 @@ fn refusals_name_the_argument() {
         ("supports[0] rotation", on(vec![elastic(5.0, 1e6, -1.0), pinned(10.0)])),
         ("supports[0] rotation", on(vec![elastic(5.0, 1e6, f64::NAN), pinned(10.0)])),
         ("supports", on(vec![pinned(0.0), pinned(10.0), pinned(0.0)])),
-        ("spans", Bridge::continuous(&[], [PINNED; 2], &[1e9], &[1e3], &three(), &[])),
-        ("spans[1]", Bridge::continuous(&[10.0, 0.0], [PINNED; 2], &[1e9], &[1e3], &three(), &[])),
+        ("spans", continuous(&[], [PINNED; 2], &[1e9], &[1e3], &three(), &[])),
+        ("spans[1]", continuous(&[10.0, 0.0], [PINNED; 2], &[1e9], &[1e3], &three(), &[])),
     ] {
         assert_eq!(key(result), expected);
     }
 }
 
 fn two_spans_of(ei: &[f64]) -> Result<Bridge, Error> {
-    Bridge::continuous(&[10.0, 20.0], [PINNED; 2], ei, &[1e3], &Stations::PerSpan(vec![3]), &[])
+    continuous(&[10.0, 20.0], [PINNED; 2], ei, &[1e3], &Stations::PerSpan(vec![3]), &[])
 }
 
 #[test]
 fn ends_of_a_continuous_bridge() {
     let stations = Stations::PerSpan(vec![2]);
     let of = |ends: [Option<Fixity>; 2]| {
-        let bridge = Bridge::continuous(&[4.0, 10.0, 5.0], ends, &[1e9], &[1e3], &stations, &[]).unwrap();
+        let bridge = continuous(&[4.0, 10.0, 5.0], ends, &[1e9], &[1e3], &stations, &[]).unwrap();
         bridge.supports().iter().map(|s| (s.at, s.fixity)).collect::<Vec<_>>()
     };
     let (p, c) = (Fixity::Pinned, Fixity::Clamped);

@@ -1,17 +1,16 @@
 //! The march in time: orders of convergence, stability, limits, tail and approach.
 
-mod problems;
-
+use crate::problems::*;
+use crate::problems::{beam, continuous};
 use faer::Mat;
-use problems::*;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Drive;
+use spanwise::bridge::lumping::Stations;
+use spanwise::crossing::history::History;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::history::History;
-use spanwise::influence::Quantity;
+use spanwise::passage::Drive;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::influence::Quantity;
 use spanwise::vehicle::Vehicle;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
@@ -159,7 +158,7 @@ fn slow_crossings_are_static() {
 /// A load on the tip of a cantilever stands in a hollow; a slow vehicle does not climb out of it by itself.
 #[test]
 fn constant_traction_may_not_carry_the_vehicle_out_of_a_hollow() {
-    let bridge = Bridge::new(9.0, vec![clamped(9.0)], &[1.9e9], &[6e3], &Stations::PerSpan(vec![5]), &[]).unwrap();
+    let bridge = beam(9.0, vec![clamped(9.0)], &[1.9e9], &[6e3], &Stations::PerSpan(vec![5]), &[]).unwrap();
     let at = |speed: f64, drive: Drive| {
         let settings = Settings { drive: drive.clone(), step: Some(2e-3), ..Settings::at_speed(speed) };
         run(&bridge, &kishan_vehicle(), &settings, 2, &undamped(), ForceSummation, &[0.0]).map(|_| ())
@@ -194,9 +193,10 @@ fn the_tail_adds_to_the_extremes() {
         let rear = none.rows().last().unwrap().positions[1];
         assert!((rear - bridge.length()).abs() < 1e-9, "{drive:?} ends with the last axle at {rear} m");
         let [a, b] = [&none, &long].map(|run| &run.outcome.envelope.dynamic);
-        let pairs = |list: fn(&spanwise::envelope::Extremes) -> &Vec<spanwise::envelope::Extreme>| {
-            list(a).iter().zip(list(b)).map(|(a, b)| b.value - a.value).collect::<Vec<_>>()
-        };
+        let pairs =
+            |list: fn(&spanwise::crossing::envelope::Extremes) -> &Vec<spanwise::crossing::envelope::Extreme>| {
+                list(a).iter().zip(list(b)).map(|(a, b)| b.value - a.value).collect::<Vec<_>>()
+            };
         let (max, min) = (pairs(|e| &e.max), pairs(|e| &e.min));
         let rounding = 1e-9 * a.max.iter().fold(0.0_f64, |m, e| m.max(e.value));
         assert!(max.iter().all(|&d| d >= -rounding) && min.iter().all(|&d| d <= rounding), "{max:?} {min:?}");
@@ -299,7 +299,7 @@ fn refusals() {
     ] {
         assert_eq!(key_of(good.clone(), damping.clone()), "damping", "{damping:?}");
     }
-    let long = Bridge::continuous(&[100.0], [PINNED; 2], &[1e11], &[1e4], &Stations::PerSpan(vec![9]), &[]).unwrap();
+    let long = continuous(&[100.0], [PINNED; 2], &[1e11], &[1e4], &Stations::PerSpan(vec![9]), &[]).unwrap();
     let run = run(&long, &kishan_vehicle(), &Settings::at_speed(5.0), 3, &undamped(), ForceSummation, &[0.0]).unwrap();
     let settings = Settings { step: Some(1e-3), ..Settings::at_speed(5.0) };
     let stopped = run.analysis.cross(&kishan_vehicle(), &settings, &mut || false).map(|_| ());

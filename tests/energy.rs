@@ -1,9 +1,7 @@
 //! Energy under constant traction: conserved without friction or damping, lost to friction and never gained.
 
-mod problems;
-
-use problems::*;
-use spanwise::course::Drive::ConstantTraction;
+use crate::problems::*;
+use spanwise::passage::Drive::ConstantTraction;
 
 const GRAVITY: f64 = 9.806_65;
 
@@ -61,7 +59,7 @@ fn energy_is_conserved_over_the_whole_crossing() {
         println!("drift {drift:.2e} of the largest strain energy");
         assert!(drift <= DRIFT, "{drift:e}");
         // At constant speed the traction works on the bridge, which this accounting would see.
-        let driven = kishan_in_steps(&vehicle, spanwise::course::Drive::ConstantSpeed, 1.0 / 6.0, count, &[0.0]);
+        let driven = kishan_in_steps(&vehicle, spanwise::passage::Drive::ConstantSpeed, 1.0 / 6.0, count, &[0.0]);
         let energies = driven.energies(&vehicle, GRAVITY);
         let work = energies.total.iter().map(|e| (e - energies.total[0]).abs()).fold(0.0, f64::max);
         assert!(work > 10.0 * DRIFT * largest(&energies.strain), "{work:e} J");

@@ -1,23 +1,23 @@
 //! The contract of an ensemble: a sample is a crossing, to the bit, however the work is done.
 
-mod problems;
-
+use crate::problems::ensemble::study_of;
 use std::sync::Arc;
 
-use problems::ensemble::*;
-use problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
-use problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
-use spanwise::assembly::Friction;
+use crate::problems::ensemble::*;
+use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
+use crate::problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
 use spanwise::bridge::Bridge;
-use spanwise::course::Passage;
 use spanwise::damping::Damping;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::{BLOCK, Study};
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
 /// and some samples alone.
@@ -69,7 +69,7 @@ fn kinds_of_few_samples_are_as_good_as_kinds_of_many() {
         let settings = Settings { approach: 6.0, tail, ..Settings::at_speed(1.0) };
         let kinds: Vec<Vec<Passage>> = vehicles.iter().map(|vehicle| vec![Passage::of(vehicle.clone())]).collect();
         let analysis = kishan_analysis(9, Recovery::ForceSummation);
-        let study = Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap();
+        let study = study_of(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap();
         assert!(study.shares);
         // Six of each kind, of which any that follow each other are few.
         let count = 6 * number;
@@ -150,7 +150,7 @@ fn check_study(name: &str, bridge: &Bridge, vehicle: &Vehicle, recovery: Recover
     let own = (variant % 7 != 6).then(|| (roads(POOR), 3));
     let settings = Settings { approach, ramp, tail, road, ..Settings::at_speed(SPEED) };
     let kinds = vec![vec![Passage::of(vehicle.clone())]];
-    let study = Study::new(analysis, kinds, settings, own, (variant % 2 == 1).then_some(0.07), &ALL).unwrap();
+    let study = study_of(analysis, kinds, settings, own, (variant % 2 == 1).then_some(0.07), &ALL).unwrap();
     let speeds = (0..9).map(|i| 8.0 + 30.0 * spread(variant + i)).collect();
     let samples = Samples { speeds, ..Samples::at_speed(variant as u64, 9, 1.0) };
     let isa = Isa::present().last().unwrap();
@@ -188,10 +188,10 @@ fn a_sample_is_a_crossing_by_every_vehicle() {
 fn a_sample_with_its_own_factors_is_a_crossing() {
     for recovery in RECOVERIES {
         let damping = Damping::Rayleigh { mass: 0.4, stiffness: 5e-4 };
-        let analysis = analysis_of(&problems::two_spans(4), 4, &damping, &[], recovery);
+        let analysis = analysis_of(&crate::problems::two_spans(4), 4, &damping, &[], recovery);
         let kinds = vec![vec![Passage::of(articulated(1.0, 1.0))]];
         let settings = Settings { approach: 8.0, tail: Tail::Fixed(0.2), ..Settings::at_speed(SPEED) };
-        let study = Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), None, &ALL).unwrap();
+        let study = study_of(analysis, kinds, settings, Some((roads(POOR), SEED)), None, &ALL).unwrap();
         let count = 11;
         let factors = Parameter::ALL.into_iter().enumerate().filter_map(|(p, parameter)| {
             let width = match parameter {
@@ -224,7 +224,7 @@ fn a_factor_of_zero_is_the_sample_s_own() {
         let kinds = vec![vec![Passage::of(vehicle)]];
         let analysis = kishan_analysis(5, Recovery::ForceSummation);
         let own = Some((synthesis(), SEED));
-        let study = Study::new(analysis, kinds, Settings::at_speed(SPEED), own, None, &ALL).unwrap();
+        let study = study_of(analysis, kinds, Settings::at_speed(SPEED), own, None, &ALL).unwrap();
         for zeros in [vec![0], vec![3], vec![1, 2, 5, 7]] {
             let values = (0..19).map(|i| if zeros.contains(&i) { 0.0 } else { 1.0 }).collect();
             let factors = vec![Factors { parameter, width: 1, values }];
@@ -241,7 +241,7 @@ fn dampers_are_weak_in_long_steps_only() {
     let axle = Axle { tyre_damping: 1.2e4, ..Axle::new(0.0, 8e5, 1.2e6) };
     let kinds = vec![vec![Passage::of(Vehicle::new(5e3, 3e4, 1.2, vec![axle]).unwrap())]];
     let analysis = kishan_analysis(5, Recovery::ForceSummation);
-    let study = Study::new(analysis, kinds, Settings::at_speed(1.0), None, Some(0.2), &ALL).unwrap();
+    let study = study_of(analysis, kinds, Settings::at_speed(1.0), None, Some(0.2), &ALL).unwrap();
     let samples = Samples { speeds: (0..33).map(|i| 6.0 + 40.0 * spread(i)).collect(), ..samples(33) };
     check_ways(&study, &samples, &[0, 1, 2, 3]);
     check_alone(&study, &samples, &run(&study, &samples, Isa::Baseline, 1), "weak dampers");
@@ -254,7 +254,7 @@ fn several_vehicles_are_a_crossing_each() {
     let second = Passage { entry: 0.8, ..Passage::of(hs20(1.0)) };
     let kinds = vec![vec![Passage::of(kishan_vehicle()), second], vec![Passage::of(kishan_vehicle())]];
     let settings = Settings { tail: Tail::Fixed(0.2), ..approach() };
-    let study = Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), None, &ALL).unwrap();
+    let study = study_of(analysis, kinds, settings, Some((synthesis(), SEED)), None, &ALL).unwrap();
     assert!(!study.shares);
     let kinds = (0..10).map(|i| i % 2).collect();
     let samples = Samples { kinds, ..Samples::at_speed(3, 10, SPEED) };

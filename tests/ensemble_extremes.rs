@@ -1,24 +1,24 @@
 //! Extremes of an ensemble: of second order in the step, found in the tail too, and nobody's but the sample's own.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::ensemble::study_of;
 use std::sync::Arc;
 
-use problems::ensemble::*;
-use problems::vehicles::half_car;
-use problems::{PINNED, kishan_vehicle, observed_order, sprung_mass};
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Passage;
+use crate::problems::ensemble::*;
+use crate::problems::vehicles::half_car;
+use crate::problems::{PINNED, kishan_vehicle, observed_order, sprung_mass};
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, stop_or_step};
 use spanwise::ensemble::sample::Samples;
-use spanwise::influence::Quantity;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::body::Friction;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;
@@ -27,16 +27,16 @@ const ORDER_MARGIN: f64 = 0.1;
 const SPAN: f64 = 24.0;
 
 /// Simple span of 24 m, seen where no step of a whole fraction of the span ends.
-fn analysis(sections: usize, damping: f64) -> Arc<spanwise::analysis::Analysis> {
+fn analysis(sections: usize, damping: f64) -> Arc<spanwise::crossing::analysis::Analysis> {
     let stations = Stations::PerSpan(vec![11]);
-    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[4e9], &[8e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[SPAN], [PINNED; 2], &[4e9], &[8e3], &stations, &[]).unwrap();
     let sections: Vec<f64> = (1..=sections).map(|i| SPAN * i as f64 / (sections + 1) as f64 + 0.0137).collect();
     analysis_of(&bridge, 3, &Damping::Ratios(vec![damping]), &sections, Recovery::ForceSummation)
 }
 
 /// Waves of 6 m and 5 mm that grow from nothing.
 fn waves() -> Road {
-    problems::mechanics::profile([-40.0, 80.0], |x| {
+    crate::problems::mechanics::profile([-40.0, 80.0], |x| {
         let t = ((x + 10.0) / 10.0).clamp(0.0, 1.0);
         let grown = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         0.005 * grown * (std::f64::consts::TAU * x / 6.0).sin()
@@ -48,7 +48,7 @@ fn extremes(quantity: Quantity, advance: f64) -> Vec<f64> {
     let vehicle = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
     let settings = Settings { approach: 12.0, road: Arc::new(waves()), ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(vehicle)]];
-    let study = Study::new(analysis(41, 0.01), kinds, settings, None, Some(advance), &[quantity]).unwrap();
+    let study = study_of(analysis(41, 0.01), kinds, settings, None, Some(advance), &[quantity]).unwrap();
     let speeds: Vec<f64> = vec![13.0, 17.0, 21.0, 26.0, 29.0, 33.0];
     let samples = Samples { count: speeds.len(), speeds, ..Samples::at_speed(0, 1, 1.0) };
     let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
@@ -81,7 +81,7 @@ fn extremes_are_of_second_order() {
 fn tail(tail: f64, recovery: Recovery) -> Study {
     let settings = Settings { approach: 5.0, tail: Tail::Fixed(tail), ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(kishan_vehicle())]];
-    Study::new(kishan_analysis(9, recovery), kinds, settings, Some((synthesis(), SEED)), Some(0.05), &ALL).unwrap()
+    study_of(kishan_analysis(9, recovery), kinds, settings, Some((synthesis(), SEED)), Some(0.05), &ALL).unwrap()
 }
 
 #[test]
@@ -119,8 +119,7 @@ fn no_extreme_in_the_tail_is_that_of_a_neighbour() {
 fn peaks_of_the_tail_are_found() {
     let vehicle = sprung_mass(2e3, 1e6);
     let settings = Settings { tail: Tail::Fixed(1.0), ..Settings::at_speed(1.0) };
-    let study =
-        Study::new(analysis(5, 0.0), vec![vec![Passage::of(vehicle)]], settings, None, Some(0.05), &ALL).unwrap();
+    let study = study_of(analysis(5, 0.0), vec![vec![Passage::of(vehicle)]], settings, None, Some(0.05), &ALL).unwrap();
     let speeds = vec![60.0, 80.0, 100.0, 120.0];
     let samples = Samples { count: speeds.len(), speeds, ..Samples::at_speed(0, 1, 1.0) };
     let found = run(&study, &samples, Isa::chosen().unwrap(), 1);
@@ -137,7 +136,7 @@ fn peaks_of_the_tail_are_found() {
     // Without a tail they are not seen, and what is seen with it is never less.
     let without = Settings { tail: Tail::Fixed(0.0), ..study.settings.clone() };
     let kinds = vec![study.kinds[0].passages.clone()];
-    let short = Study::new(Arc::clone(&study.analysis), kinds, without, None, Some(0.05), &ALL).unwrap();
+    let short = study_of(Arc::clone(&study.analysis), kinds, without, None, Some(0.05), &ALL).unwrap();
     let shorter = run(&short, &samples, Isa::chosen().unwrap(), 1);
     let mut exceeded = 0;
     for sample in 0..samples.count {

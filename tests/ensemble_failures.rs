@@ -1,18 +1,17 @@
 //! Samples that fail: marked with place, step and cause, and nothing to their neighbours.
 
-mod problems;
-
-use problems::ensemble::*;
-use problems::kishan_vehicle;
-use problems::vehicles::{half_car, leaf};
-use spanwise::course::Passage;
+use crate::problems::ensemble::study_of;
+use crate::problems::ensemble::*;
+use crate::problems::kishan_vehicle;
+use crate::problems::vehicles::{half_car, leaf};
 use spanwise::ensemble::record::{Failure, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
 
 const COUNT: usize = 41;
@@ -24,14 +23,14 @@ fn study(vehicle: Vehicle, tail: f64) -> Study {
     let settings = Settings { approach: 6.0, tail: Tail::Fixed(tail), ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(vehicle)]];
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
-    Study::new(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap()
+    study_of(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap()
 }
 
 /// Speeds all their own, and a factor that is `bad` where samples are to fail and `good` elsewhere.
 fn samples(parameter: Parameter, width: usize, good: f64, bad: f64) -> Samples {
     let values = (0..COUNT * width).map(|i| if BAD.contains(&(i / width)) { bad } else { good });
     let factors = vec![Factors { parameter, width, values: values.collect() }];
-    let speeds = (0..COUNT).map(|i| 18.0 + 17.0 * problems::spread(i)).collect();
+    let speeds = (0..COUNT).map(|i| 18.0 + 17.0 * crate::problems::spread(i)).collect();
     Samples { factors, speeds, ..Samples::at_speed(11, COUNT, 1.0) }
 }
 
@@ -94,7 +93,7 @@ fn a_step_that_is_not_finite() {
     for failure in check(&study, &of(1e304), &of(1.0)) {
         let Error::NotFinite { time, position, .. } = failure.cause else { panic!("{:?}", failure.cause) };
         let step = failure.step.unwrap();
-        let speed = 18.0 + 17.0 * problems::spread(failure.sample);
+        let speed = 18.0 + 17.0 * crate::problems::spread(failure.sample);
         println!("sample {}: step {step}, {time} s, {position} m", failure.sample);
         assert!((time - step as f64 * advance / speed).abs() <= 1e-12, "{time} s");
         assert!((position - (step.saturating_sub(1) as f64 * advance - 6.0)).abs() <= 1e-12, "{position} m");
@@ -122,7 +121,7 @@ fn what_overflows_is_marked() {
         let analysis = kishan_analysis(9, Recovery::ForceSummation);
         let own = Some((roads(1e306), SEED));
         let advance = shares.then_some(0.1);
-        let study = Study::new(analysis, vec![vec![passage]], settings.clone(), own, advance, &ALL).unwrap();
+        let study = study_of(analysis, vec![vec![passage]], settings.clone(), own, advance, &ALL).unwrap();
         assert_eq!(study.shares, shares);
         let samples = Samples::at_speed(0, 19, SPEED);
         for isa in Isa::present() {
@@ -155,7 +154,7 @@ fn crossings_one_by_one_tell_the_step() {
     let passage = Passage { entry: 0.25, ..Passage::of(masses) };
     let settings = Settings { approach: 6.0, ..Settings::at_speed(1.0) };
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
-    let study = Study::new(analysis, vec![vec![passage]], settings, None, None, &ALL).unwrap();
+    let study = study_of(analysis, vec![vec![passage]], settings, None, None, &ALL).unwrap();
     assert!(!study.shares);
     let samples = samples(Parameter::BodyMass, 4, 1.0, 1e6);
     let results = run(&study, &samples, Isa::Baseline, 2).results;
@@ -176,7 +175,7 @@ fn samples_that_would_take_too_long() {
         let settings = Settings { approach: 6.0, ..Settings::at_speed(1.0) };
         let analysis = kishan_analysis(9, Recovery::ForceSummation);
         let advance = shares.then_some(0.1);
-        let study = Study::new(analysis, vec![vec![passage]], settings, None, advance, &ALL).unwrap();
+        let study = study_of(analysis, vec![vec![passage]], settings, None, advance, &ALL).unwrap();
         assert_eq!(study.shares, shares);
         let with = |bad: f64| {
             let speeds = (0..COUNT).map(|i| if BAD.contains(&i) { bad } else { 20.0 }).collect();
@@ -219,7 +218,7 @@ fn studies_that_cannot_be() {
         let own = (entry > 0.0).then(|| (synthesis(), SEED));
         let advance = (advance > 0.0).then_some(advance);
         let analysis = kishan_analysis(9, Recovery::ForceSummation);
-        Study::new(analysis, vec![vec![passage]], settings, own, advance, &ALL)
+        study_of(analysis, vec![vec![passage]], settings, own, advance, &ALL)
             .and_then(|study| study.run(&Samples::at_speed(0, 1, SPEED), &Workers::new(None)?, &Progress::default()))
             .map(|_| ())
             .unwrap_err()

@@ -1,27 +1,28 @@
 //! Random studies: nothing panics, no number is lost unmarked, and no way of doing the work changes a bit.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::ensemble::study_of;
 use std::sync::Arc;
 
-use problems::ensemble::*;
-use problems::vehicles::{elastic, leaf};
-use problems::{CLAMPED, PINNED, spread};
+use crate::problems::ensemble::*;
+use crate::problems::vehicles::{elastic, leaf};
+use crate::problems::{CLAMPED, PINNED, spread};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Passage;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, stop_or_step};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::influence::Quantity;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 prop_compose! {
     fn any_bridge()(
@@ -40,7 +41,7 @@ prop_compose! {
             ends = [PINNED, None];
         }
         let rigidity = &rigidity[..spans.len()];
-        Bridge::continuous(&spans, ends, rigidity, &[mass], &Stations::PerSpan(vec![stations]), &[]).unwrap()
+        continuous(&spans, ends, rigidity, &[mass], &Stations::PerSpan(vec![stations]), &[]).unwrap()
     }
 }
 
@@ -83,7 +84,7 @@ prop_compose! {
                 let axles: Vec<Axle> = axles.iter().zip(&positions).map(place).collect();
                 let inertia = mass * 6.0;
                 // Springs are all that holds a body up: where they cannot, there is no such vehicle.
-                Vehicle::new(mass, inertia, 1.2, axles).unwrap_or_else(|_| problems::kishan_vehicle())
+                Vehicle::new(mass, inertia, 1.2, axles).unwrap_or_else(|_| crate::problems::kishan_vehicle())
             }
         }
     }
@@ -160,7 +161,7 @@ prop_compose! {
 
 /// Long waves of 10 mm, known wherever a vehicle comes.
 fn waves(length: f64) -> Road {
-    problems::mechanics::profile([-60.0, length + 60.0], |x| 0.01 * (0.7 * x).sin())
+    crate::problems::mechanics::profile([-60.0, length + 60.0], |x| 0.01 * (0.7 * x).sin())
 }
 
 /// The part of a row that a kind of event fills, and the rest.
@@ -173,7 +174,7 @@ fn check(case: Case) -> Result<(), TestCaseError> {
     let analysis = analysis_of(&bridge, modes, &Damping::Ratios(vec![ratio]), &[], recovery);
     let kinds: Vec<Vec<Passage>> = vehicles.iter().map(|v| vec![Passage::of(v.clone())]).collect();
     let own = own.map(|roughness| (roads(roughness), 99));
-    let study = match Study::new(analysis, kinds, settings, own, advance, &quantities) {
+    let study = match study_of(analysis, kinds, settings, own, advance, &quantities) {
         Ok(study) => study,
         // Nothing to look at; else what is given is such that there is a study.
         Err(error) => {

@@ -1,12 +1,10 @@
 //! What the compiler makes of the march: whole vectors of the instruction set, nothing gathered number by number.
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]
 
-mod problems;
-
 use std::collections::BTreeMap;
 use std::process::Command;
 
-use problems::ensemble::{headline, run, samples};
+use crate::problems::ensemble::{headline, run, samples};
 use spanwise::lane::dispatch::Isa;
 
 /// Products of whole vectors in the steps and in the recovery, at least; with AVX2 each has some eight hundred.

@@ -1,25 +1,26 @@
 //! What a sample leaves besides extremes of responses, and what factors do, against single crossings; how steps are halved.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::ensemble::study_of;
 use std::sync::Arc;
 
-use problems::ensemble::*;
-use problems::vehicles::{articulated, half_car, leaf};
-use problems::{PINNED, kishan_vehicle, largest_magnitude, spread};
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Passage;
+use crate::problems::ensemble::*;
+use crate::problems::vehicles::{articulated, half_car, leaf};
+use crate::problems::{PINNED, kishan_vehicle, largest_magnitude, spread};
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Run;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::{Column, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::influence::Quantity;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 /// Sums of some thousand numbers in another order, relative.
 const SUMMED: f64 = 1e-9;
@@ -102,7 +103,7 @@ fn statistics_are_those_of_the_history() {
     let forces = Vehicle::force_train(&[9e4, 1.2e5], &[0.0, -3.5]).unwrap();
     let analysis = kishan_analysis(9, Recovery::ForceSummation);
     let settings = Settings { tail: Tail::Fixed(0.3), ..approach() };
-    let study = Study::new(analysis, vec![vec![Passage::of(forces)]], settings, None, None, &ALL).unwrap();
+    let study = study_of(analysis, vec![vec![Passage::of(forces)]], settings, None, None, &ALL).unwrap();
     let found = run(&study, &samples(3), Isa::Baseline, 1).results;
     assert_eq!(found.layout.bodies, 0);
     assert!(column(&found, 1, Column::LoadCoefficients).iter().all(|&v| v == 0.0));
@@ -117,7 +118,7 @@ fn time_aloft_ends_with_the_crossing() {
         let settings = Settings { approach, tail: Tail::Fixed(seconds), ..Settings::at_speed(1.0) };
         let analysis = kishan_analysis(5, Recovery::ForceSummation);
         let kinds = vec![vec![Passage::of(light)]];
-        let study = Study::new(analysis, kinds, settings, Some((roads(16384e-6), SEED)), Some(0.05), &ALL).unwrap();
+        let study = study_of(analysis, kinds, settings, Some((roads(16384e-6), SEED)), Some(0.05), &ALL).unwrap();
         let speeds = (0..80).map(|i| 24.0 + 10.0 * spread(i)).collect();
         let samples = Samples { speeds, ..Samples::at_speed(0, 80, 1.0) };
         let [_, at_the_end] = check_statistics(&study, &samples, &format!("tail {seconds} s"));
@@ -139,9 +140,9 @@ fn heavier(mass: f64) -> Vehicle {
 }
 
 /// Two spans whose EI is `stiffer` times as large, damped by ratio to critical.
-fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::analysis::Analysis> {
+fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::crossing::analysis::Analysis> {
     let stations = Stations::PerSpan(vec![4, 5]);
-    let bridge = Bridge::continuous(&[14.0, 20.0], [PINNED; 2], &[2.4e9 * stiffer], &[7e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[14.0, 20.0], [PINNED; 2], &[2.4e9 * stiffer], &[7e3], &stations, &[]).unwrap();
     analysis_of(&bridge, 4, &Damping::Ratios(vec![ratio]), &[], recovery)
 }
 
@@ -149,9 +150,9 @@ fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::analys
 #[test]
 fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
     let settings = Settings { approach: 10.0, tail: Tail::Fixed(0.2), ..Settings::at_speed(20.0) };
-    let made = |analysis: Arc<spanwise::analysis::Analysis>, vehicle: Vehicle| {
+    let made = |analysis: Arc<spanwise::crossing::analysis::Analysis>, vehicle: Vehicle| {
         let own = Some((synthesis(), SEED));
-        Study::new(analysis, vec![vec![Passage::of(vehicle)]], settings.clone(), own, Some(0.02), &ALL).unwrap()
+        study_of(analysis, vec![vec![Passage::of(vehicle)]], settings.clone(), own, Some(0.02), &ALL).unwrap()
     };
     let values = [0.7, 0.85, 1.0, 1.2, 1.5];
     for recovery in [Recovery::ForceSummation, Recovery::ForceSummationByRates, Recovery::Superposition] {
@@ -170,7 +171,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                 let one = Samples::at_speed(3 + sample as u64, 1, 20.0);
                 let Run { results: own, at_rest: own_at_rest, .. } = run(&built, &one, Isa::Baseline, 1);
                 let near = |what: &str, found: &[f64], expected: &[f64]| {
-                    let off = problems::largest_difference(found, expected) / largest_magnitude(expected);
+                    let off = crate::problems::largest_difference(found, expected) / largest_magnitude(expected);
                     assert!(off <= TWICE, "{recovery:?}, {parameter:?} {value}, {what}: {off:e}");
                 };
                 let at_rest = match found.layout.own_statics {
@@ -214,7 +215,7 @@ fn stability_limit(study: &Study, samples: &Samples, sample: usize) -> f64 {
 #[test]
 fn halvings_are_a_function_of_the_sample_alone() {
     let many = Stations::PerSpan(vec![24]);
-    let bridge = Bridge::continuous(&[12.0, 15.0], [PINNED; 2], &[2.4e9], &[7e3], &many, &[]).unwrap();
+    let bridge = continuous(&[12.0, 15.0], [PINNED; 2], &[2.4e9], &[7e3], &many, &[]).unwrap();
     let two = half_car([700.0, 1100.0], 1.0, 1.0, leaf(8e3, 1e-3));
     let sprung = half_car([300.0, 400.0], 1.0, 1.0, leaf(2e4, 1e-3));
     for (name, modes, kinds) in [
@@ -230,7 +231,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
             let settings = Settings { step, ..Settings::at_speed(1.0) };
             let own = Some((synthesis(), SEED));
             let study =
-                Study::new(Arc::clone(&analysis), kinds.clone(), settings, own, advance, &[Quantity::Moment]).unwrap();
+                study_of(Arc::clone(&analysis), kinds.clone(), settings, own, advance, &[Quantity::Moment]).unwrap();
             let count = 12;
             // Stiffer and lighter than they are, in all that can be.
             let factors = Parameter::ALL.into_iter().enumerate().map(|(p, parameter)| {
@@ -275,7 +276,7 @@ fn halvings_are_a_function_of_the_sample_alone() {
 /// A road must not repeat under the vehicle, not even under the axles that stand behind the first at the start.
 #[test]
 fn a_road_that_repeats_is_refused_as_in_a_single_crossing() {
-    let bridge = Bridge::continuous(&[60.0], [PINNED; 2], &[8e10], &[7e3], &Stations::PerSpan(vec![5]), &[]).unwrap();
+    let bridge = continuous(&[60.0], [PINNED; 2], &[8e10], &[7e3], &Stations::PerSpan(vec![5]), &[]).unwrap();
     let analysis = analysis_of(&bridge, 2, &Damping::Ratios(vec![0.02]), &[6.0], Recovery::ForceSummation);
     let vehicle = articulated(1.0, 1.0);
     let wheelbase = vehicle.wheelbase();
@@ -285,7 +286,7 @@ fn a_road_that_repeats_is_refused_as_in_a_single_crossing() {
             let settings = Settings { approach, ramp, ..Settings::at_speed(20.0) };
             let own = || Some((synthesis(), SEED));
             let kinds = vec![vec![Passage::of(vehicle.clone())]];
-            let study = Study::new(Arc::clone(&analysis), kinds, settings.clone(), own(), None, &[Quantity::Moment]);
+            let study = study_of(Arc::clone(&analysis), kinds, settings.clone(), own(), None, &[Quantity::Moment]);
             let road = Arc::new(synthesis().road(SEED, 0).into());
             let single = analysis.cross(&vehicle, &Settings { road, ..settings }, &mut || true);
             assert_eq!((study.is_err(), single.is_err()), (refused, refused), "ramp {ramp}, {over}");

@@ -1,13 +1,11 @@
 //! Extremes against histories, and the impact factors made of them.
 
-mod problems;
-
-use problems::*;
+use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
-use spanwise::influence::Quantity;
+use spanwise::crossing::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::influence::Quantity;
 
 /// Two evaluations of one response, relative to its largest value.
 const ROUNDING: f64 = 1e-12;

@@ -1,12 +1,12 @@
 //! Flexibility: reciprocity, closed forms, elements, and the way from F* to F.
 
-mod problems;
-
+use crate::problems::{all_arrangements, arrangements, elements, pinned, points};
+use crate::problems::{clamped, kishan_bridge, largest_magnitude};
 use faer::Mat;
-use problems::{all_arrangements, arrangements, elements, pinned, points};
-use problems::{clamped, kishan_bridge, largest_magnitude};
-use spanwise::bridge::{Bridge, Stations, Support};
-use spanwise::flexibility::{Action, Flexibility, Structure};
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::support::Support;
+use spanwise::statics::flexibility::{Action, Flexibility, Structure};
 
 /// Closed forms and symmetry hold to rounding, relative to the largest number involved.
 const ROUNDING: f64 = 1e-12;
@@ -24,7 +24,7 @@ fn largest(matrix: &Mat<f64>) -> f64 {
 
 /// A beam without intermediate supports, its EI 3 MN m².
 fn beam(length: f64, supports: &[Support]) -> Bridge {
-    Bridge::new(length, supports.to_vec(), &[3e6], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap()
+    crate::problems::beam(length, supports.to_vec(), &[3e6], &[1e3], &Stations::PerSpan(vec![2]), &[]).unwrap()
 }
 
 /// Deflection at `x` under a unit force at `at`.

@@ -3,26 +3,27 @@
 // The control register is out of the reach of safe code.
 #![allow(unsafe_code)]
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::ensemble::study_of;
 use std::arch::asm;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use problems::ensemble::*;
-use problems::{FOOT, PINNED, kishan_vehicle};
-use spanwise::analysis::Analysis;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Passage;
+use crate::problems::ensemble::*;
+use crate::problems::{FOOT, PINNED, kishan_vehicle};
+use spanwise::bridge::lumping::Stations;
+use spanwise::crossing::analysis::Analysis;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::float_mode::Standard;
-use spanwise::influence::Quantity;
 use spanwise::lane::dispatch::Isa;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Body, Vehicle};
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Body;
 
 /// As a thread starts.
 const STANDARD: u32 = 0x1F80;
@@ -103,7 +104,7 @@ impl Given {
     fn analysis(&self) -> Arc<Analysis> {
         let [rigidity, mass] = [8.6e9, 6037.0];
         let stations = Stations::PerSpan(vec![3]);
-        let bridge = Bridge::continuous(&self.spans, [PINNED; 2], &[rigidity], &[mass], &stations, &[]).unwrap();
+        let bridge = continuous(&self.spans, [PINNED; 2], &[rigidity], &[mass], &stations, &[]).unwrap();
         analysis_of(&bridge, 3, &Damping::Ratios(vec![0.01]), &self.sections, Recovery::ForceSummation)
     }
 
@@ -114,7 +115,7 @@ impl Given {
     fn study(&self) -> Study {
         let kinds = vec![vec![Passage::of(self.vehicle())]];
         let settings = Settings { tail: Tail::Fixed(0.2), ..approach() };
-        Study::new(self.analysis(), kinds, settings, Some((synthesis(), SEED)), Some(0.05), &ALL).unwrap()
+        study_of(self.analysis(), kinds, settings, Some((synthesis(), SEED)), Some(0.05), &ALL).unwrap()
     }
 }
 

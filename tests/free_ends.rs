@@ -1,12 +1,12 @@
 //! Free ends of a bridge: an axle lands on the tip or drops off it with its whole load.
 
-mod problems;
-
-use problems::*;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::influence::Quantity;
+use crate::problems::continuous;
+use crate::problems::*;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::influence::Quantity;
 
 /// Two evaluations of one shear, relative to its largest value.
 const ROUNDING: f64 = 1e-10;
@@ -15,14 +15,13 @@ const ROUNDING: f64 = 1e-10;
 const HALF_A_MILLISECOND: f64 = 1e-2;
 
 fn overhangs() -> Bridge {
-    Bridge::continuous(&[5.0, 20.0, 5.0], [None, None], &[1.94148e9], &[6037.7], &Stations::PerSpan(vec![3]), &[])
-        .unwrap()
+    continuous(&[5.0, 20.0, 5.0], [None, None], &[1.94148e9], &[6037.7], &Stations::PerSpan(vec![3]), &[]).unwrap()
 }
 
 fn cantilever(mirrored: bool) -> Bridge {
     let ends = if mirrored { [None, CLAMPED] } else { [CLAMPED, None] };
     let stations = if mirrored { vec![0.0, 2.5, 5.0, 7.5] } else { vec![2.5, 5.0, 7.5, 10.0] };
-    Bridge::continuous(&[10.0], ends, &[1e9], &[4000.0], &Stations::At(stations), &[]).unwrap()
+    continuous(&[10.0], ends, &[1e9], &[4000.0], &Stations::At(stations), &[]).unwrap()
 }
 
 /// The moment beside the overhang as the axle leaves it: the load on the tip counts until it drops, not a mixture of it
@@ -108,9 +107,8 @@ fn tails_of_any_length() {
 /// Stations on the supports carry nothing that moves: a span may not lose its mass to them.
 #[test]
 fn a_span_keeps_its_mass() {
-    let bridge = |stations: Vec<f64>| {
-        Bridge::continuous(&[10.0, 30.0], [PINNED; 2], &[1e9], &[2000.0], &Stations::At(stations), &[])
-    };
+    let bridge =
+        |stations: Vec<f64>| continuous(&[10.0, 30.0], [PINNED; 2], &[1e9], &[2000.0], &Stations::At(stations), &[]);
     let error = bridge(vec![5.0, 10.0, 40.0]).unwrap_err().to_string();
     assert!(error.contains("none from 10 m to 40 m") && error.contains("off its supports"), "{error}");
     assert!(bridge(vec![0.0, 5.0, 10.0, 25.0, 40.0]).is_ok());

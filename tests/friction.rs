@@ -1,13 +1,12 @@
 //! Friction in the suspensions: its two limits, its bound, and the state it starts in.
 
-mod problems;
-
-use problems::*;
-use spanwise::assembly::Friction;
-use spanwise::influence::Quantity;
+use crate::problems::*;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 /// Two descriptions of the same vehicle, relative to the largest value.
 const ROUNDING: f64 = 1e-9;

@@ -1,15 +1,15 @@
 //! A moving constant force on a simply supported span, after L. Frýba, "Vibration of solids and structures under moving
 //! loads", 3rd ed. (1999), ch. 1: a mass on a vanishing spring presses with its weight alone.
 
-mod problems;
-
-use problems::answers::{MovingForce, moving_forces};
-use problems::*;
-use spanwise::bridge::{Bridge, Stations};
+use crate::problems::answers::{MovingForce, moving_forces};
+use crate::problems::continuous;
+use crate::problems::*;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::influence::Quantity;
+use spanwise::passage::settings::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::settings::Settings;
+use spanwise::statics::influence::Quantity;
 
 /// Half a unit of the last digit of the table is 5e-5; the rest is for the steps, the stations and the modes left out.
 const AMPLIFICATION: f64 = 5e-4;
@@ -29,7 +29,7 @@ const STATIONS: usize = 48;
 
 fn bridge() -> Bridge {
     let stations = Stations::PerSpan(vec![STATIONS]);
-    Bridge::continuous(&[SPAN], [PINNED; 2], &[EI], &[MASS_PER_LENGTH], &stations, &[]).unwrap()
+    continuous(&[SPAN], [PINNED; 2], &[EI], &[MASS_PER_LENGTH], &stations, &[]).unwrap()
 }
 
 /// A crossing seen at midspan and at a third of the span.

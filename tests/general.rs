@@ -1,15 +1,15 @@
 //! Springs, hinges and EI that varies against closed forms and limits; mechanisms; settlements.
 
-mod problems;
-
-use problems::*;
-use spanwise::along::{Along, TAPER_PIECES};
-use spanwise::bridge::{Bridge, Layout, Stations, Support};
+use crate::problems::*;
+use spanwise::bridge::distribution::{Along, TAPER_PIECES};
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::support::Support;
+use spanwise::bridge::{Bridge, Layout};
 use spanwise::error::Error;
-use spanwise::flexibility::{Action, Flexibility, Structure};
-use spanwise::influence;
 use spanwise::modes::Modes;
-use spanwise::settlement::Settled;
+use spanwise::statics::flexibility::{Action, Flexibility, Structure};
+use spanwise::statics::influence;
+use spanwise::statics::settlement::Settled;
 
 /// A few roundings of a closed form.
 const ROUNDING: f64 = 1e-11;

@@ -1,13 +1,11 @@
 //! Influence lines against beam elements with a node at the load, and against each other in a mirror.
 
-mod problems;
-
-use problems::elements::{self, Solved};
-use problems::{all_arrangements, mirrored, more_points, points};
+use crate::problems::elements::{self, Solved};
+use crate::problems::{all_arrangements, mirrored, more_points, points};
 use spanwise::bridge::Bridge;
-use spanwise::flexibility::{Flexibility, Restraint, Structure};
-use spanwise::influence::{self, Quantity, Responses};
-use spanwise::line::{Line, Mesh};
+use spanwise::bridge::cubics::{Line, Mesh};
+use spanwise::statics::flexibility::{Flexibility, Restraint, Structure};
+use spanwise::statics::influence::{self, Quantity, Responses};
 
 /// Two routes to one number, the elements' the worse conditioned one, relative to the largest of its kind.
 const ROUNDING: f64 = 1e-9;

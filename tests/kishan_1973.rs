@@ -1,12 +1,10 @@
 //! H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973), §4: the illustrative example.
 
-mod problems;
-
-use problems::*;
-use spanwise::flexibility::{Flexibility, Restraint, Structure};
-use spanwise::influence::{self, Quantity};
+use crate::problems::*;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::vehicle::Suspension;
+use spanwise::statics::flexibility::{Flexibility, Restraint, Structure};
+use spanwise::statics::influence::{self, Quantity};
+use spanwise::vehicle::body::Suspension;
 
 /// F* as printed [1e-6 ft/lb]: stations 1 to 3, support B, stations 4 to 6; the upper triangle.
 const PRINTED_FLEXIBILITY: [&[f64]; 7] = [

@@ -1,14 +1,13 @@
 //! Choosing among numbers in lanes, NaN, zeros of either sign and infinities among them: the same bits wherever it is done.
 
-mod problems;
-
 use std::marker::PhantomData;
 
 use spanwise::ensemble::watch::Watched;
 use spanwise::lane::Lane;
 use spanwise::lane::bits::Bits;
-use spanwise::lane::dispatch::{InLanes, Isa, Lanes, Work, with};
+use spanwise::lane::dispatch::{InLanes, Isa, with};
 use spanwise::lane::wide::Wide;
+use spanwise::lane::{Lanes, Work};
 
 /// All that can go wrong, and something that does not.
 const NUMBERS: [f64; 14] = [

@@ -1,27 +1,27 @@
 //! Wheels leave the road: forces never negative, energy accounted for, and what is reported about it.
 
-mod problems;
-
+use crate::problems::continuous;
 use std::sync::Arc;
 
-use problems::mechanics::{Budget, faded};
-use problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
-use problems::*;
+use crate::problems::mechanics::{Budget, faded};
+use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
+use crate::problems::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::Drive;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::crossing::history::LiftOff;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::history::LiftOff;
+use spanwise::passage::Drive;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::{Class, Spectrum};
-use spanwise::settings::{Settings, Tail};
 use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Friction;
 
 /// Balances of forces at an instant, to rounding of what the steps leave, relative to the weight.
 const BALANCE: f64 = 1e-9;
@@ -32,7 +32,7 @@ const MISSING: f64 = 1e-3;
 /// Two spans, the second longer.
 fn bridge() -> Bridge {
     let stations = Stations::PerSpan(vec![5, 7]);
-    Bridge::continuous(&[14.0, 20.0], [PINNED; 2], &[2.4e9], &[7e3], &stations, &[]).unwrap()
+    continuous(&[14.0, 20.0], [PINNED; 2], &[2.4e9], &[7e3], &stations, &[]).unwrap()
 }
 
 fn road(class: Class, band: [f64; 2], seed: u64) -> Road {

@@ -1,22 +1,24 @@
 //! Limits in which one model turns into another, symmetry and repetition.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::mechanics::meet;
 use std::sync::Arc;
 
-use problems::mechanics::{motion, profile, run_all};
-use problems::vehicles::{articulated, elastic, half_car, leaf};
-use problems::*;
-use spanwise::assembly::{BuildUp, Friction};
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::{Braking, Direction, Drive, Passage};
+use crate::problems::mechanics::{motion, profile, run_all};
+use crate::problems::vehicles::{articulated, elastic, half_car, leaf};
+use crate::problems::*;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::friction::{Law, Stroke};
-use spanwise::influence::Quantity;
+use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Braking, Direction, Drive, Passage};
 use spanwise::recovery::Recovery::{ForceSummation, Superposition};
 use spanwise::road::Road;
-use spanwise::settings::{Settings, Tail};
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::statics::influence::Quantity;
+use spanwise::step::friction::{Law, Stroke};
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::{BuildUp, Friction};
 
 /// Two descriptions of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;
@@ -28,7 +30,7 @@ const SPAN: f64 = 25.0;
 
 fn simple() -> Bridge {
     let stations = Stations::PerSpan(vec![9]);
-    Bridge::continuous(&[SPAN], [PINNED; 2], &[8e9], &[5e3], &stations, &[]).unwrap()
+    continuous(&[SPAN], [PINNED; 2], &[8e9], &[5e3], &stations, &[]).unwrap()
 }
 
 /// Average acceleration, so that stiff parts do not ask for shorter steps, and wheels that pull.
@@ -170,7 +172,7 @@ fn leaf_springs_in_any_number_of_steps() {
         for pair in turns.windows(2) {
             for i in 1..=steps {
                 let to = pair[0] + (pair[1] - pair[0]) * i as f64 / steps as f64;
-                let (shortening, friction) = law.meet(hard * to, hard, &stroke);
+                let (shortening, friction) = meet(&law, hard * to, hard, &stroke);
                 let moved = shortening - stroke.shortening;
                 let envelope = spring * shortening + limit.copysign(moved);
                 recursion = envelope + (recursion - envelope) * (-moved.abs() / decay).exp();
@@ -234,7 +236,7 @@ fn opposing_vehicles_superpose_as_they_become_light() {
 #[test]
 fn mirrored_bridges_and_directions() {
     let stations = Stations::PerSpan(vec![4, 6]);
-    let bridge = Bridge::continuous(&[13.0, 19.0], [CLAMPED, PINNED], &[2.4e9, 1.9e9], &[7e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[13.0, 19.0], [CLAMPED, PINNED], &[2.4e9, 1.9e9], &[7e3], &stations, &[]).unwrap();
     let length = bridge.length();
     let turned = mirrored(&bridge);
     let uneven = |x: f64| 0.012 * (1.3 * x).sin() + 0.008 * (2.9 * x + 1.0).cos() + 0.004 * (5.3 * x).sin();

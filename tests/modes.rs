@@ -1,14 +1,14 @@
 //! Modes: continuous beams as the limit of lumped ones, independent checks, repeated frequencies, signs, lines.
 
-mod problems;
-
-use problems::answers::uniform_bridges;
-use problems::*;
-use spanwise::along::Along;
-use spanwise::bridge::{Bridge, Layout, Stations};
+use crate::problems::answers::uniform_bridges;
+use crate::problems::beam;
+use crate::problems::*;
+use spanwise::bridge::distribution::Along;
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::{Bridge, Layout};
 use spanwise::error::Error;
-use spanwise::flexibility::{Flexibility, Structure};
 use spanwise::modes::Modes;
+use spanwise::statics::flexibility::{Flexibility, Structure};
 
 /// Demanded of every mode: residual, orthogonality, relative to one.
 const ROUNDING: f64 = 1e-10;
@@ -160,14 +160,14 @@ fn as_many_modes_as_masses_that_move() {
 fn two_cantilevers(rigidity: f64, factor: f64) -> Bridge {
     let supports = vec![pinned(8.0), pinned(18.0)];
     let stations = Stations::PerSpan(vec![3, 0, 3]);
-    Bridge::new(26.0, supports, &[1e9, rigidity, factor * 1e9], &[6e3, 0.0, 6e3], &stations, &[]).unwrap()
+    beam(26.0, supports, &[1e9, rigidity, factor * 1e9], &[6e3, 0.0, 6e3], &stations, &[]).unwrap()
 }
 
 /// A repeated frequency leaves its shapes open; the rule settles them: here each lives in one overhang.
 #[test]
 fn repeated_frequencies_give_reproducible_modes() {
     let supports = vec![clamped(0.0)];
-    let cantilever = Bridge::new(8.0, supports, &[1e9], &[6e3], &Stations::PerSpan(vec![3]), &[]).unwrap();
+    let cantilever = beam(8.0, supports, &[1e9], &[6e3], &Stations::PerSpan(vec![3]), &[]).unwrap();
     let alone = modes(&cantilever, 3);
     // Coupled by a part in 10¹³, the overhangs left to themselves would swing together or against each other.
     let bridge = two_cantilevers(1e22, 1.0);

@@ -2,15 +2,15 @@
 //! (I + Mφφᵀ) Ä + 2vMφφ'ᵀ Ȧ + (Ω² + M(v²φφ''ᵀ + v̇φφ'ᵀ)) A = Mgφ,
 //! integrated by Runge and Kutta in the same modes.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::mechanics::{Shapes, run_all, runge_kutta};
+use crate::problems::*;
 use nalgebra::{DMatrix, DVector};
-use problems::mechanics::{Shapes, run_all, runge_kutta};
-use problems::*;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::{Direction, Drive, Passage};
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::passage::settings::Settings;
+use spanwise::passage::{Direction, Drive, Passage};
 use spanwise::recovery::Recovery::Superposition;
-use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
 
 /// Deflections and forces in steps of a two-hundredth of the shortest period, relative to the largest: what steps of
@@ -30,7 +30,7 @@ const GRAVITY: f64 = 9.806_65;
 
 fn bridge() -> Bridge {
     let stations = Stations::PerSpan(vec![40]);
-    Bridge::continuous(&[SPAN], [PINNED; 2], &[EI], &[MASS_PER_LENGTH], &stations, &[]).unwrap()
+    continuous(&[SPAN], [PINNED; 2], &[EI], &[MASS_PER_LENGTH], &stations, &[]).unwrap()
 }
 
 /// Speed over twice the span per first period.

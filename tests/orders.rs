@@ -1,19 +1,19 @@
 //! Orders of the time step for general vehicles, and motion along the road by hand.
 
-mod problems;
-
-use problems::mechanics::{Budget, motion, orders, profile, run_all, state};
-use problems::vehicles::{articulated, elastic, half_car, hs20};
-use problems::*;
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::{Braking, Direction, Drive, Passage};
+use crate::problems::continuous;
+use crate::problems::mechanics::{Budget, motion, orders, profile, run_all, state};
+use crate::problems::vehicles::{articulated, elastic, half_car, hs20};
+use crate::problems::*;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::influence::Quantity;
+use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Braking, Direction, Drive, Passage};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::influence::Quantity;
 use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Friction;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;
@@ -33,7 +33,7 @@ const APPROACH: f64 = 12.0;
 
 fn bridge(stiffer: f64) -> Bridge {
     let stations = Stations::PerSpan(vec![11]);
-    Bridge::continuous(&[SPAN], [PINNED; 2], &[4e9 * stiffer], &[8e3], &stations, &[]).unwrap()
+    continuous(&[SPAN], [PINNED; 2], &[4e9 * stiffer], &[8e3], &stations, &[]).unwrap()
 }
 
 fn damping() -> Damping {
@@ -206,7 +206,7 @@ fn braking_changes_the_momentum() {
         let vehicle = articulated(1.0, 1.0);
         let settings = settings(braking(deceleration, from, ramp, adhesion));
         let run = crossed(&bridge(1.0), &vehicle, &Settings { step: Some(5e-4), ..settings });
-        let shapes = problems::mechanics::Shapes::new(&run.bridge, 3);
+        let shapes = crate::problems::mechanics::Shapes::new(&run.bridge, 3);
         let history = &run.outcome.history;
         let (weight, begins) = (vehicle.mass() * GRAVITY, (APPROACH + from) / 20.0);
         let (mut worst, mut slipping, mut pushed) = (0.0_f64, 0, 0.0_f64);

@@ -1,17 +1,17 @@
 //! Recovery: rows against the sequence of [KTN73], equilibrium, Eq. 6 against Eq. 11, and what few modes are worth.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::*;
 use faer::Mat;
-use problems::*;
-use spanwise::bridge::{Bridge, Stations};
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::flexibility::Restraint;
-use spanwise::influence::Quantity;
+use spanwise::force_summation::{Recovered, Sequence};
 use spanwise::modes::Modes;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
-use spanwise::sequence::{Recovered, Sequence};
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::flexibility::Restraint;
+use spanwise::statics::influence::Quantity;
 
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;
@@ -267,7 +267,7 @@ fn eq_6_differs_from_eq_11_by_the_damping_forces_that_the_modes_miss() {
 fn fewer_modes_suffice() {
     let span = 25.0;
     let stations = Stations::PerSpan(vec![20]);
-    let bridge = Bridge::continuous(&[span], [PINNED, PINNED], &[1.2e10], &[9.0e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[span], [PINNED, PINNED], &[1.2e10], &[9.0e3], &stations, &[]).unwrap();
     let extremes = |modes: usize, recovery: Recovery, speed: f64| {
         let (settings, damping) = (Settings::at_speed(speed), Damping::Ratios(vec![0.02]));
         let sections = [0.0, 0.5 * span, span];

@@ -6,19 +6,21 @@ use nalgebra::Complex;
 use spanwise::ensemble::block::Drawing;
 use spanwise::error::Error;
 use spanwise::lane::Lane;
+use spanwise::lane::Lanes;
 use spanwise::lane::bits::Bits;
-use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
+use spanwise::lane::dispatch::{InLanes, Isa, with};
 use spanwise::lane::wide::{Wide, WideBits};
+use spanwise::road::Road;
 use spanwise::road::feature::Feature;
 use spanwise::road::fft::InverseFft;
 use spanwise::road::golden_car;
 use spanwise::road::patch::Patch;
 use spanwise::road::philox::{philox4x32, philox4x32_lanes};
+use spanwise::road::point::Point;
 use spanwise::road::profile::Profile;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::{Class, Spectrum};
 use spanwise::road::turn;
-use spanwise::road::{Point, Road};
 
 /// Usual contact patch of a lorry's tyre [m].
 const PATCH: f64 = 0.24;

@@ -1,18 +1,19 @@
 //! Massless axles with dampers against an integration of their own, and leaf springs that feed no energy in.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::mechanics::meet;
 use std::sync::Arc;
 
-use problems::mechanics::{motion, orders, profile, runge_kutta};
-use problems::vehicles::leaf;
-use problems::*;
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
+use crate::problems::mechanics::{motion, orders, profile, runge_kutta};
+use crate::problems::vehicles::leaf;
+use crate::problems::*;
+use spanwise::bridge::lumping::Stations;
+use spanwise::passage::settings::Settings;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 /// An observed order may differ from that of the rule by this much.
 const ORDER_MARGIN: f64 = 0.1;
@@ -45,7 +46,7 @@ fn rise(x: f64) -> f64 {
 /// Bounce, its rate and the shortening after 18 m, all on the approach, in so many steps to a metre.
 fn crossed(vehicle: &Vehicle, road: &Road, per_metre: usize) -> Vec<f64> {
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     let settings = Settings {
         approach: APPROACH,
         road: Arc::new(road.clone()),
@@ -112,7 +113,7 @@ fn dampers_keep_the_initial_friction() {
     // As low at the far end of the bridge as at the start, so that it is level until the rise.
     let road = profile([-30.0, 20.0], |x| rise(x) - rise(x - 15.0));
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     let settings = Settings { approach: APPROACH, road: Arc::new(road), ..Settings::at_speed(SPEED) };
     for damper in [0.0, 4e4] {
         for friction in [Friction::coulomb(3e3), leaf(3e3, 1e-3)] {
@@ -159,7 +160,7 @@ fn a_step_in_the_road() {
     use spanwise::road::patch::Patch;
     let step: Road = Feature::step(-10.0, 0.005, Patch::new(0.0).unwrap()).unwrap().into();
     let stations = Stations::PerSpan(vec![3]);
-    let bridge = Bridge::continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
+    let bridge = continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
     for damper in [0.0, 4e4] {
         let jumps = [2e-4, 1e-4, 5e-5].map(|h| {
             let settings = Settings {
@@ -184,7 +185,7 @@ fn a_step_in_the_road() {
 /// Whatever the stroke, a leaf spring gives back no more than it has taken in; one that would is refused.
 #[test]
 fn leaf_springs_take_energy() {
-    use spanwise::friction::{Law, Stroke};
+    use spanwise::step::friction::{Law, Stroke};
     let (limit, spring) = (4e3, 8e5);
     let longest = limit / spring;
     for decay in [0.1 * longest, 0.5 * longest, longest] {
@@ -195,7 +196,7 @@ fn leaf_springs_take_energy() {
             let mut work = 0.0;
             for i in 1..=4000 {
                 let to = amplitude * (std::f64::consts::TAU * f64::from(i) / 400.0).sin();
-                let (shortening, friction) = law.meet(1e14 * to, 1e14, &stroke);
+                let (shortening, friction) = meet(&law, 1e14 * to, 1e14, &stroke);
                 if i > 3600 {
                     work += 0.5 * (friction + stroke.friction) * (shortening - stroke.shortening);
                 }

@@ -1,34 +1,36 @@
 //! The free vibration after a crossing: what it can reach, and that it is kept until nothing more can come.
 
-mod problems;
-
+use crate::problems::continuous;
+use crate::problems::ensemble::study_of;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use spanwise::analysis::{Analysis, Watching};
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::{Braking, Drive, Passage};
-use spanwise::crossing::cross_watched;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::crossing::analysis::{Analysis, Preparation, Watching};
+use spanwise::crossing::cross;
+use spanwise::crossing::history::History;
+use spanwise::crossing::tail::Watch;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::ensemble::record::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::error::Error;
-use spanwise::flexibility::Flexibility;
-use spanwise::history::History;
-use spanwise::influence::Quantity;
 use spanwise::lane::dispatch::Isa;
-use spanwise::modal::{ModalDamping, ModalSolve};
 use spanwise::modes::Modes;
-use spanwise::newmark::{Coordinate, Newmark};
+use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Braking, Drive, Passage};
 use spanwise::recovery::Recovery;
-use spanwise::settings::{Settings, Tail};
-use spanwise::tail::{LOOK_EVERY, PERIODS, Reach, Vibration, Watch};
+use spanwise::statics::flexibility::Flexibility;
+use spanwise::statics::influence::Quantity;
+use spanwise::step::bridge_step::{ModalDamping, ModalSolve};
+use spanwise::step::newmark::{Coordinate, Newmark};
+use spanwise::step::vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};
 use spanwise::vehicle::Vehicle;
 
-use problems::ensemble::{ALL, SEED, check_alone, mixed, mixed_samples, roads, some};
-use problems::vehicles::half_car;
-use problems::{
+use crate::problems::ensemble::{ALL, SEED, check_alone, mixed, mixed_samples, roads, some};
+use crate::problems::vehicles::half_car;
+use crate::problems::{
     PINNED, Run, all_arrangements, kishan_bridge, kishan_vehicle, mechanics, run, spread, two_spans, undamped,
     uneven_damping,
 };
@@ -92,7 +94,7 @@ fn vehicles() -> Vec<(&'static str, Vehicle)> {
     vec![
         ("forces", Vehicle::force_train(&[9e4, 1.2e5], &[0.0, -3.5]).unwrap()),
         ("friction", kishan_vehicle()),
-        ("half-car", half_car([700.0, 1100.0], 1.0, 1.0, spanwise::assembly::Friction::NONE)),
+        ("half-car", half_car([700.0, 1100.0], 1.0, 1.0, spanwise::vehicle::body::Friction::NONE)),
     ]
 }
 
@@ -188,8 +190,7 @@ fn a_tail_ends_where_all_responses_say_so() {
             let found = crossed(&bridge, &vehicle, &damping, recovery, speed, Tail::Free);
             let settings = Settings { tail: Tail::Free, ..Settings::at_speed(speed) };
             let (passages, mut watch) = ([Passage::of(vehicle)], Thorough(&found.analysis));
-            let expected =
-                cross_watched(&found.analysis.model, &passages, &settings, &mut watch, &mut || true).unwrap();
+            let expected = cross(&found.analysis.model, &passages, &settings, &mut watch, &mut || true).unwrap();
             let history = &found.outcome.history;
             let what = format!("{name}, {vehicle_name}, {damping:?}, {recovery:?}, {speed} m/s");
             assert_eq!((history.len(), history.settled), (expected.len(), expected.settled), "{what}");
@@ -242,7 +243,7 @@ fn one_undamped_mode_takes_a_period() {
 /// by a thousand times what it does under a slow vehicle.
 #[test]
 fn the_largest_of_all_may_come_late() {
-    let span = Bridge::continuous(&[25.0], [PINNED; 2], &[8.3e9], &[2303.0], &Stations::PerSpan(vec![9]), &[]).unwrap();
+    let span = continuous(&[25.0], [PINNED; 2], &[8.3e9], &[2303.0], &Stations::PerSpan(vec![9]), &[]).unwrap();
     let force = Vehicle::force_train(&[1e5], &[0.0]).unwrap();
     let of = |tail: Tail, speed: f64| {
         let settings = Settings { tail, ..Settings::at_speed(speed) };
@@ -303,7 +304,7 @@ fn a_standing_vehicle_has_the_longest_tail() {
 fn the_tail_is_none_of_the_vehicles_business() {
     let road = Arc::new(roads(1024e-6).road(SEED, 3).into());
     let of = |tail: Tail| {
-        let vehicle = half_car([700.0, 1100.0], 0.3, 0.0, spanwise::assembly::Friction::NONE);
+        let vehicle = half_car([700.0, 1100.0], 0.3, 0.0, spanwise::vehicle::body::Friction::NONE);
         let settings = Settings { tail, approach: 20.0, road: Arc::clone(&road), ..Settings::at_speed(30.0) };
         let damping = Damping::Ratios(vec![0.02]);
         let passages = [Passage::of(vehicle)];
@@ -327,10 +328,10 @@ fn study(recovery: Recovery, drive: Drive, quantities: &[Quantity]) -> Study {
     let bridge = two_spans(4);
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 4).unwrap();
     let damping = Damping::Ratios(vec![0.03]);
-    let analysis = Analysis::new(&bridge, modes, &damping, None, recovery, &mut || true).unwrap();
+    let analysis = Preparation::default().damping(damping).recovery(recovery).of(&bridge, modes, &mut || true).unwrap();
     let settings = Settings { approach: 7.0, tail: Tail::Free, drive, ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(kishan_vehicle())], vec![Passage::of(vehicles().remove(2).1)]];
-    Study::new(Arc::new(analysis), kinds, settings, Some((roads(256e-6), SEED)), None, quantities).unwrap()
+    study_of(Arc::new(analysis), kinds, settings, Some((roads(256e-6), SEED)), None, quantities).unwrap()
 }
 
 fn samples(count: usize) -> Samples {
@@ -353,22 +354,22 @@ fn samples(count: usize) -> Samples {
 fn each_sample_has_its_own_tail() {
     for recovery in RECOVERIES {
         let (study, samples) = (study(recovery, Drive::ConstantSpeed, &ALL), samples(21));
-        let reference = problems::ensemble::run(&study, &samples, Isa::Baseline, 1);
+        let reference = crate::problems::ensemble::run(&study, &samples, Isa::Baseline, 1);
         check_alone(&study, &samples, &reference, &format!("{recovery:?}"));
         for isa in Isa::present() {
             for (threads, chunk) in [(1, 32), (2, 5), (2, 1)] {
-                let found = problems::ensemble::run_in_chunks(&study, &samples, isa, threads, chunk);
+                let found = crate::problems::ensemble::run_in_chunks(&study, &samples, isa, threads, chunk);
                 assert_eq!(found.results.digests, reference.results.digests, "{recovery:?}, {isa:?}, {chunk}");
             }
         }
-        let of = |i: usize| problems::ensemble::column(&reference.results, i, Column::Tail)[0];
+        let of = |i: usize| crate::problems::ensemble::column(&reference.results, i, Column::Tail)[0];
         let lengths: Vec<f64> = (0..samples.count).map(of).collect();
         let mut distinct = lengths.clone();
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
         assert!(distinct.len() > samples.count / 2, "{lengths:?}");
         for i in [0, 7, 20] {
-            let own = problems::ensemble::run(&study, &some(&samples, i..i + 1), Isa::Baseline, 1).results;
+            let own = crate::problems::ensemble::run(&study, &some(&samples, i..i + 1), Isa::Baseline, 1).results;
             assert_eq!(own.digests[0], reference.results.digests[i], "{recovery:?}, sample {i}");
         }
     }
@@ -380,9 +381,9 @@ fn tails_of_mixed_samples() {
     let Study { analysis, kinds, settings, own, .. } = mixed();
     let kinds = kinds.into_iter().map(|kind| kind.passages).collect();
     let settings = Settings { tail: Tail::Free, ..settings };
-    let study = Study::new(analysis, kinds, settings, own, Some(0.1), &ALL).unwrap();
+    let study = study_of(analysis, kinds, settings, own, Some(0.1), &ALL).unwrap();
     let samples = mixed_samples(0, 19);
-    let found = problems::ensemble::run(&study, &samples, Isa::chosen().unwrap(), 2);
+    let found = crate::problems::ensemble::run(&study, &samples, Isa::chosen().unwrap(), 2);
     check_alone(&study, &samples, &found, "mixed");
 }
 
@@ -392,14 +393,14 @@ fn tails_of_samples_one_by_one() {
     for quantities in [&ALL[..], &[Quantity::Moment][..]] {
         let together = study(Recovery::ForceSummation, Drive::ConstantSpeed, quantities);
         let samples = Samples { kinds: vec![0; 6], speeds: vec![20.0; 6], count: 6, ..Samples::at_speed(0, 6, 20.0) };
-        let there = problems::ensemble::run(&together, &samples, Isa::chosen().unwrap(), 1).results;
+        let there = crate::problems::ensemble::run(&together, &samples, Isa::chosen().unwrap(), 1).results;
         // The same motion, said otherwise.
         let drive = Drive::Speeds { times: vec![0.0], speeds: vec![20.0] };
         let apart = study(Recovery::ForceSummation, drive, quantities);
-        let alone = problems::ensemble::run(&apart, &samples, Isa::chosen().unwrap(), 1).results;
+        let alone = crate::problems::ensemble::run(&apart, &samples, Isa::chosen().unwrap(), 1).results;
         let mut kept = 0;
         for i in 0..6 {
-            let [a, b] = [&there, &alone].map(|results| problems::ensemble::column(results, i, Column::Tail)[0]);
+            let [a, b] = [&there, &alone].map(|results| crate::problems::ensemble::column(results, i, Column::Tail)[0]);
             assert!((a - b).abs() <= 1e-9, "{quantities:?}, sample {i}: {a} s, {b} s");
             kept += usize::from(a > 0.0);
         }

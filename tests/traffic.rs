@@ -1,19 +1,19 @@
 //! Several vehicles at once: who is where, when each has left, and who is refused.
 
-mod problems;
-
-use problems::mechanics::{profile, run_all};
-use problems::vehicles::{elastic, half_car};
-use problems::*;
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Stations};
-use spanwise::course::{Braking, Direction, Drive, Passage};
+use crate::problems::continuous;
+use crate::problems::mechanics::{profile, run_all};
+use crate::problems::vehicles::{elastic, half_car};
+use crate::problems::*;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
+use spanwise::passage::settings::Settings;
+use spanwise::passage::{Braking, Direction, Drive, Passage};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::settings::Settings;
 use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Friction;
 
 /// Two computations of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;
@@ -22,7 +22,7 @@ const SPAN: f64 = 30.0;
 
 fn bridge() -> Bridge {
     let stations = Stations::PerSpan(vec![9]);
-    Bridge::continuous(&[SPAN], [PINNED; 2], &[9e9], &[8e3], &stations, &[]).unwrap()
+    continuous(&[SPAN], [PINNED; 2], &[9e9], &[8e3], &stations, &[]).unwrap()
 }
 
 fn truck() -> Vehicle {

@@ -1,11 +1,11 @@
 //! Vehicles of several bodies against multipliers for the hinges, hand calculations and mirrors.
 
-mod problems;
-
+use crate::problems::{in_series, kishan_vehicle, largest_difference, spread};
 use nalgebra::{DMatrix, DVector};
-use problems::{in_series, kishan_vehicle, largest_difference, spread};
-use spanwise::assembly::{Assembly, BuildUp, ContactLaw, Friction, STICK};
-use spanwise::vehicle::{Axle, Body, Coupling, Suspension, Vehicle};
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::{Axle, Body, Coupling, Suspension};
+use spanwise::vehicle::body::{BuildUp, Friction, STICK};
+use spanwise::vehicle::equations::{Assembly, ContactLaw};
 
 /// Two ways to solve the same small linear systems.
 const SOLVED: f64 = 1e-10;

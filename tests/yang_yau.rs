@@ -1,13 +1,11 @@
 //! A sprung mass on a simply supported span: Y. B. Yang and J. D. Yau, "Vehicle-bridge interaction element for dynamic
 //! analysis", Journal of Structural Engineering 123 (1997).
 
-mod problems;
-
-use problems::answers::YangYau;
-use problems::*;
+use crate::problems::answers::YangYau;
+use crate::problems::*;
+use spanwise::passage::settings::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::settings::Settings;
-use spanwise::vehicle::Suspension;
+use spanwise::vehicle::body::Suspension;
 
 /// The published deflections have five digits; the rest is for their steps and ours.
 const DEFLECTION: f64 = 5e-4;

@@ -5,15 +5,16 @@ use std::sync::Arc;
 use super::Study;
 use super::record::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
-use crate::analysis::Watching;
-use crate::course::Passage;
-use crate::crossing::{ModalBridge, cross_watched};
-use crate::envelope::{Extremes, axle_loads};
+use crate::crossing;
+use crate::crossing::analysis::Watching;
+use crate::crossing::envelope::{Extremes, axle_loads};
+use crate::crossing::history::History;
 use crate::error::Error;
-use crate::history::History;
-use crate::modal::ModalDamping;
+use crate::modal_bridge::ModalBridge;
+use crate::passage::Passage;
+use crate::passage::settings::Settings;
 use crate::road::Road;
-use crate::settings::Settings;
+use crate::step::bridge_step::ModalDamping;
 use crate::vehicle::Vehicle;
 
 /// The bridge of a sample, and what its rows are to multiply A and Ȧ by.
@@ -104,7 +105,7 @@ pub fn cross(
     };
     let factors = scaled.as_ref().map_or([1.0; 2], |scaled| [scaled.stiffness, scaled.rates]);
     let mut watching = Watching::new(&study.analysis, &study.free, factors);
-    let mut history = cross_watched(model, &passages, &settings, &mut watching, go_on)?;
+    let mut history = crossing::cross(model, &passages, &settings, &mut watching, go_on)?;
     let (_, envelope) = watching.conclude(&mut history, go_on)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);

@@ -10,13 +10,14 @@ use super::stretch::{Stretch, Widths};
 use super::survey::survey;
 use super::table::{CHUNK, Chunk, Moment, Table};
 use super::watch::{Ride, Watched, watch_moment, watch_stop};
+use crate::crossing::tail::FreeRows;
 use crate::lane::Lane;
-use crate::lane::dispatch::{Lanes, Work};
-use crate::newmark::Coordinate;
+use crate::lane::{Lanes, Work};
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
-use crate::step::{State, Stepper, Unsettled};
-use crate::tail::{FreeRows, Reach, Vibration};
+use crate::step::newmark::Coordinate;
+use crate::step::stepper::{State, Stepper, Unsettled};
+use crate::step::vibration::{Reach, Vibration};
 
 /// Factors of one sample's bridge on what the rows multiply.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::record;
 use super::table::{self, Advance, Passing, SIDES, Stop};
 use super::together;
-use crate::steps::MAX_STEPS;
+use crate::passage::step_length::MAX_STEPS;
 
 /// The steps of one kind of march.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,9 +6,9 @@
 use super::look::Look;
 use super::stretch::Stretch;
 use super::watch::Watched;
+use crate::crossing::extremes::Watched as Block;
 use crate::lane::Lane;
 use crate::recovery::{Place, Placed, Rows, WIDTH};
-use crate::survey::Watched as Block;
 
 /// Looks for the extremes of every row at the steps of a stretch of one sample; `places` are those of its axles, by step
 /// and axle, none where there is no axle on the bridge.

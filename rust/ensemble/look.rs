@@ -1,7 +1,7 @@
 //! Which responses a study looks at, each distinct row once.
 
-use crate::influence::{Quantity, Responses};
 use crate::recovery::Rows;
+use crate::statics::influence::{Quantity, Responses};
 
 /// A row that is evaluated.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +87,7 @@ impl Look {
         (2 * place) as f64 + of_row % 2.0
     }
 
-    /// Every section and both ends, as [`crate::survey`] looks for their passing.
+    /// Every section and both ends, as [`crate::crossing::extremes`] looks for their passing.
     fn find_places(&mut self, rows: &Rows, responses: &Responses) {
         let (nodes, last) = (rows.mesh().nodes(), rows.mesh().panels());
         let sections = responses.sections();

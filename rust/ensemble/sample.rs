@@ -1,8 +1,9 @@
 //! What differs from sample to sample: number, kind of event, speed, and factors on vehicle and bridge.
 
-use crate::assembly::Friction;
 use crate::error::Error;
-use crate::vehicle::{Coupling, Vehicle};
+use crate::vehicle::Vehicle;
+use crate::vehicle::body::Coupling;
+use crate::vehicle::body::Friction;
 
 /// What a factor multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -213,7 +214,7 @@ impl Samples {
             if !(speed.is_finite() && speed > 0.0) {
                 return Err(Error::input(key(), speed, "must be finite and greater than 0"));
             }
-            crate::motion::reasonable(key(), speed, "m/s")?;
+            crate::passage::motion::reasonable(key(), speed, "m/s")?;
         }
         for factors in &self.factors {
             let Factors { parameter, width, values } = factors;

@@ -2,10 +2,11 @@
 //! of a group of lanes.
 
 use super::table::{Below, Table};
+use crate::geometry::{Geometry, Surface};
 use crate::lane::Lane;
-use crate::newmark::Coordinate;
-use crate::road::spline::weighted;
-use crate::step::{Geometry, Stepper, Surface};
+use crate::road::b_spline::weighted;
+use crate::step::newmark::Coordinate;
+use crate::step::stepper::Stepper;
 
 /// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
 pub const COUPLED: usize = 1 << 21;
@@ -107,11 +108,6 @@ impl<L: Lane> Geometry<L> for Shared<'_, L> {
         self.step += 1;
         self.row = self.step.min(self.table.last());
         self.look_down();
-    }
-
-    #[inline(always)]
-    fn follow(&mut self, _contact: usize, _motion: Coordinate<L>, _new_step: bool) -> L::Mask {
-        L::never()
     }
 
     #[inline(always)]

@@ -5,12 +5,13 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::look::Look;
-use crate::influence::Responses;
-use crate::path::{ModeShapes, Pavement, Share};
+use crate::geometry::Surface;
+use crate::geometry::pavement::{Pavement, Share};
+use crate::modal_bridge::ModeShapes;
 use crate::recovery::{Place, Rows};
+use crate::road::b_spline::Taps;
 use crate::road::random::Synthesis;
-use crate::road::spline::Taps;
-use crate::step::Surface;
+use crate::statics::influence::Responses;
 
 /// Steps whose responses are bounded together.
 pub const CHUNK: usize = 32;
@@ -387,7 +388,7 @@ pub fn passings(path: &Advance, places: &[f64]) -> Vec<Passing> {
     passings
 }
 
-/// Every passing of a section or an end, as [`crate::survey`] looks for them, on both sides.
+/// Every passing of a section or an end, as [`crate::crossing::extremes`] looks for them, on both sides.
 fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec<Stop> {
     let last = rows.mesh().panels();
     let at: Vec<f64> = look.places.iter().map(|place| place.1).collect();

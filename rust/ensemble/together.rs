@@ -12,12 +12,14 @@ use super::watch::Watched;
 use super::{Kind, Study};
 use crate::error::Error;
 use crate::lane::Lane;
-use crate::lane::dispatch::{InLanes, Lanes};
-use crate::modal::ModalDamping;
-use crate::settings::{Settings, Tail};
-use crate::step::{Moving, Propulsion, Scheme, Stepper, Unsettled};
-use crate::steps::{bytes, room};
-use crate::tail::most_steps;
+use crate::lane::Lanes;
+use crate::lane::dispatch::InLanes;
+use crate::passage::settings::{Settings, Tail};
+use crate::passage::step_length::{bytes, room};
+use crate::step::bridge_step::ModalDamping;
+use crate::step::stepper::{Scheme, Stepper, Unsettled};
+use crate::step::unit::{Moving, Propulsion};
+use crate::step::vibration::most_steps;
 
 /// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
 pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
@@ -110,7 +112,7 @@ struct Marched<L> {
     seen: Seen<L>,
     /// Of the static responses, if they differ from sample to sample.
     at_rest: Option<Seen<L>>,
-    /// How far free vibration can exceed it, and where: see [`crate::tail::FreeRows::growth`].
+    /// How far free vibration can exceed it, and where: see [`crate::crossing::tail::FreeRows::growth`].
     growth: [L; 2],
     /// The last step of each.
     last: L,

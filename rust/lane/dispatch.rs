@@ -1,6 +1,6 @@
 //! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
 
-use super::Lane;
+use super::Lanes;
 use super::wide::Wide;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Avx2, Avx512};
@@ -91,33 +91,6 @@ impl Isa {
     }
 }
 
-/// A loop that is compiled once for each instruction set.
-pub trait Work {
-    /// What comes of it.
-    type Output;
-
-    /// Goes through it; must be inlined, with all that it calls, or the instruction set is lost.
-    fn run(self) -> Self::Output;
-}
-
-/// Lanes that work is done in.
-pub trait Lanes: Lane {
-    /// Does the work with the instruction set that these lanes are made for, which the processor must have.
-    fn dispatch<W: Work>(work: W) -> W::Output;
-}
-
-impl Lanes for f64 {
-    fn dispatch<W: Work>(work: W) -> W::Output {
-        work.run()
-    }
-}
-
-impl<const N: usize> Lanes for Wide<N> {
-    fn dispatch<W: Work>(work: W) -> W::Output {
-        work.run()
-    }
-}
-
 /// Something to be done in lanes yet to be chosen.
 pub trait InLanes {
     /// What comes of it.
@@ -150,7 +123,8 @@ pub trait InLanes {
 ///
 /// ```compile_fail
 /// #![forbid(unsafe_code)]
-/// use spanwise::lane::dispatch::{InLanes, Isa, Lanes, with};
+/// use spanwise::lane::Lanes;
+/// use spanwise::lane::dispatch::{InLanes, Isa, with};
 ///
 /// struct One;
 ///

@@ -5,8 +5,8 @@
 
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::Lane;
 use super::bits::Bits;
+use super::{Lane, Lanes, Work};
 
 /// One number for each of N samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -248,5 +248,11 @@ impl<const N: usize> Bits for WideBits<N> {
             self.0[i] = self.0[i].spread();
         }
         self
+    }
+}
+
+impl<const N: usize> Lanes for Wide<N> {
+    fn dispatch<W: Work>(work: W) -> W::Output {
+        work.run()
     }
 }

@@ -15,10 +15,9 @@ use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 use pulp::NullaryFnOnce;
 
-use super::Lane;
 use super::bits::Bits;
-use super::dispatch::{Lanes, Work};
 use super::pack::Pack;
+use super::{Lane, Lanes, Work};
 
 /// Eight numbers in two registers of AVX2.
 pub type Avx2 = Pack<Four, 2>;

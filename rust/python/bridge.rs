@@ -7,19 +7,25 @@ use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::{Matrix, Vector, matrix, preparing, rows};
-use crate::along::Along;
-use crate::analysis::Analysis;
-use crate::bridge::{Bridge, COINCIDENT, Fixity, Layout, Stations, Support};
+use crate::bridge::cubics::COINCIDENT;
+use crate::bridge::cubics::check_lines;
+use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::distribution::Along;
+use crate::bridge::lumping::Stations;
+use crate::bridge::support::{Fixity, Support};
+use crate::bridge::{Bridge, Layout};
+use crate::crossing::analysis::{Analysis, Preparation};
 use crate::damping::Damping;
 use crate::error::Error;
-use crate::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
-use crate::given::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};
-use crate::influence::{self, Quantity};
-use crate::line::{Line, Mesh, check_lines};
+use crate::imported::Given;
+use crate::imported::by_flexibility::ByFlexibility;
+use crate::imported::by_modes::{ByModes, GivenLines, TwoSided};
 use crate::memory;
 use crate::modes::Modes;
 use crate::recovery::Recovery;
-use crate::settlement::Settled;
+use crate::statics::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
+use crate::statics::influence::{self, Quantity};
+use crate::statics::settlement::Settled;
 
 fn fixity(name: &str, key: &str, free: bool) -> Result<Option<Fixity>, Error> {
     match name {
@@ -58,9 +64,13 @@ pub struct Solved {
 #[derive(Clone, PartialEq)]
 pub struct Asked {
     pub modes: usize,
-    pub damping: Damping,
-    pub sections: Option<Vec<f64>>,
-    pub recovery: Recovery,
+    pub preparation: Preparation,
+}
+
+impl Asked {
+    pub fn new(modes: usize, damping: Damping, sections: Option<Vec<f64>>, recovery: Recovery) -> Self {
+        Asked { modes, preparation: Preparation { damping, sections, recovery } }
+    }
 }
 
 impl Solved {
@@ -95,13 +105,12 @@ impl Solved {
             return Ok(Arc::clone(analysis));
         }
         // Nothing is held meanwhile: work that was left to itself must not keep others waiting.
-        let sections = asked.sections.as_deref();
         let analysis = Arc::new(match &self.source {
             Source::Described(bridge) => {
                 let modes = self.modes(bridge, asked.modes)?;
-                Analysis::new(bridge, modes, &asked.damping, sections, asked.recovery, go_on)?
+                asked.preparation.of(bridge, modes, go_on)?
             }
-            Source::Given(given) => Analysis::of_given(given, asked.modes, &asked.damping, sections, asked.recovery)?,
+            Source::Given(given) => asked.preparation.of_given(given, asked.modes)?,
         });
         *held(&self.analysis) = Some((asked, Arc::clone(&analysis)));
         Ok(analysis)

@@ -12,15 +12,15 @@ use super::bridge::{Asked, PyBridge};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, interruptible, packed, preparing, rows};
-use crate::analysis::{self, Analysis};
-use crate::course::{Braking, Direction, Drive, Passage};
+use crate::crossing::analysis::{self, Analysis};
+use crate::crossing::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::damping::Damping;
-use crate::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::error::Error;
-use crate::influence::Quantity;
 use crate::memory;
+use crate::passage::settings::{Settings, Tail};
+use crate::passage::{Braking, Direction, Drive, Passage};
 use crate::recovery::Recovery;
-use crate::settings::{Settings, Tail};
+use crate::statics::influence::Quantity;
 use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
@@ -82,8 +82,7 @@ impl Crossing {
         sections: Option<Vec<f64>>,
         recovery: &str,
     ) -> PyResult<Self> {
-        let asked =
-            Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
+        let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
         let vehicles = vehicles.iter().map(|vehicle| vehicle.0.clone()).collect();
         let read = postcard::from_bytes::<analysis::Outcome>(state);
         let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
@@ -393,8 +392,7 @@ pub fn cross<'py>(
     sections: Option<Vec<f64>>,
     recovery: &str,
 ) -> PyResult<Crossing> {
-    let asked =
-        Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
+    let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
     let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
     // Every passage says its own speed or brings it with its drive.
     let tail = tail.map_or(Tail::Free, Tail::Fixed);
@@ -402,7 +400,7 @@ pub fn cross<'py>(
     let solved = Arc::clone(&bridge.0);
     let assemblies = passages.iter().map(|passage| passage.vehicle.assembly());
     let of_vehicles: usize = assemblies.map(|assembly| assembly.coordinates.len() + assembly.contacts.len()).sum();
-    let order = solved.order().max(asked.sections.as_ref().map_or(0, Vec::len)).max(of_vehicles);
+    let order = solved.order().max(asked.preparation.sections.as_ref().map_or(0, Vec::len)).max(of_vehicles);
     let (analysis, outcome, passages) = preparing(py, order, move |go_on| {
         let analysis = solved.analysis(asked, go_on)?;
         let outcome = analysis.cross_all(&passages, &settings, go_on)?;

@@ -15,19 +15,19 @@ use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, p
 use super::road::PyRoad;
 use super::vehicle::{PyBody, PyVehicle, parts_of};
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
-use crate::analysis::Analysis;
-use crate::course::Passage;
+use crate::crossing::analysis::Analysis;
 use crate::ensemble::clock;
 use crate::ensemble::record::{Column, Failure, Layout, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
-use crate::ensemble::{Run, Study, Workers, alone};
+use crate::ensemble::{Plan, Run, Study, Workers, alone};
 use crate::error::Error;
-use crate::influence::Quantity;
 use crate::memory;
+use crate::passage::Passage;
+use crate::passage::settings::{Settings, Tail};
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
-use crate::settings::{Settings, Tail};
+use crate::statics::influence::Quantity;
 use crate::vehicle::Vehicle;
 
 /// Random roads of the samples' own: roughness, waviness, band, contact patch, period, seed.
@@ -372,8 +372,7 @@ pub fn ensemble<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ensemble> {
     let workers = Workers::new(threads)?;
-    let asked =
-        Asked { modes, damping: damped(damping, damping_matrix), sections, recovery: recovery_named(recovery)? };
+    let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
     let all = kinds.into_iter().map(|passages| passages.into_iter().map(passage).collect());
     let kinds = all.collect::<Result<Vec<Vec<Passage>>, Error>>()?;
     let quantities = quantities.iter().map(|name| quantity(name)).collect::<Result<Vec<_>, Error>>()?;
@@ -406,7 +405,8 @@ pub fn ensemble<'py>(
             Ok::<_, Error>((Arc::new(Synthesis::new(spectrum, Patch::new(patch)?, Some(period))?), seed))
         });
         let analysis = solved.analysis(asked, &mut go_on)?;
-        let study = Study::new(analysis, kinds, settings, own.transpose()?, advance, &quantities)?;
+        let own = own.transpose()?;
+        let study = Plan { analysis, kinds, settings, own, advance, quantities: quantities.clone() }.study()?;
         let run = study.run(&samples, &workers, told)?;
         Ok((study.analysis, study.shares, quantities, run))
     })?;

@@ -115,13 +115,13 @@ impl PyRoad {
         x: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<(Vector<'py>, Vector<'py>, Vector<'py>)> {
         let x = x.as_array().to_vec();
-        let (count, bytes) = (x.len(), ((size_of::<road::Point>() + 3 * size_of::<f64>()) * x.len()) as f64);
+        let (count, bytes) = (x.len(), ((size_of::<road::point::Point>() + 3 * size_of::<f64>()) * x.len()) as f64);
         memory::check("x", format!("{count} points"), bytes, f64::INFINITY, "the surface there", "use fewer")?;
         let points = interruptible(py, |go_on| {
             let point = |&x: &f64| if go_on() { Ok(self.0.at(x)) } else { Err(Error::Interrupted) };
-            x.iter().map(point).collect::<Result<Vec<road::Point>, Error>>()
+            x.iter().map(point).collect::<Result<Vec<road::point::Point>, Error>>()
         })?;
-        let column = |of: fn(&road::Point) -> f64| points.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
+        let column = |of: fn(&road::point::Point) -> f64| points.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
         Ok((column(|p| p.elevation), column(|p| p.slope), column(|p| p.curvature)))
     }
 

@@ -4,8 +4,9 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 use super::{Vector, preparing};
-use crate::assembly::{BuildUp, Friction};
-use crate::vehicle::{self, Axle, Body, Coupling, Suspension};
+use crate::vehicle;
+use crate::vehicle::body::{Axle, Body, Coupling, Suspension};
+use crate::vehicle::body::{BuildUp, Friction};
 
 /// Limit, initial force, stiffness of the stick, decay of a leaf spring.
 type PyFriction = (f64, f64, Option<f64>, Option<f64>);

@@ -1,6 +1,6 @@
 //! The line from which a vehicle feels a road, so that neither its height above the sea nor its grade counts.
 
-use super::Point;
+use super::point::Point;
 
 /// A straight line, r(x) = elevation + slope (x − start).
 #[derive(Debug, Clone, Copy, PartialEq)]

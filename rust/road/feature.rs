@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::Point;
 use super::patch::{Curve, Patch};
+use super::point::Point;
 use super::turn::sin_cos;
 use crate::error::{Error, finite, not_negative, positive};
 

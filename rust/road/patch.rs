@@ -1,6 +1,6 @@
 //! The contact patch of a tyre: a moving average of the road, exact through its antiderivative.
 
-use super::Point;
+use super::point::Point;
 use crate::error::{Error, not_negative};
 
 /// A curve at one place, with its antiderivative.

@@ -5,11 +5,12 @@
 //! has most of its slope and curvature there. The third derivative is continuous at the second point and the last but
 //! one ("not a knot"), so that nothing is assumed about the ends and cubics are reproduced.
 
-use super::Point;
 use super::patch::{Curve, Patch};
+use super::point::Point;
 use crate::error::{Error, finite, positive};
 use crate::float_mode::Standard;
 use crate::memory;
+use crate::spline::{self, Cubic, End, between, spline_slopes};
 
 /// Fewest points that determine a cubic.
 const FEWEST: usize = 4;
@@ -55,7 +56,7 @@ impl Profile {
         }
         let base = elevation[0];
         elevation.iter_mut().for_each(|r| *r -= base);
-        let cubics = spline(&x, &elevation);
+        let cubics = cubics(&x, &elevation);
         Ok(Self::of(x, base, cubics, patch))
     }
 
@@ -121,17 +122,16 @@ impl Profile {
         let [first, last] = self.ends();
         let inside = x.clamp(first, last);
         let piece = self.x[1..self.cubics.len()].partition_point(|&each| each <= inside);
-        let [a, b, c, d] = self.cubics[piece];
+        let cubic @ [a, b, c, d] = self.cubics[piece];
         let t = inside - self.x[piece];
-        let elevation = a + t * (b + t * (c + t * d));
-        let slope = b + t * (2.0 * c + t * 3.0 * d);
+        let (elevation, slope) = (spline::value(cubic, t), spline::slope(cubic, t));
         let integral = self.integrals[piece] + t * (a + t * (b / 2.0 + t * (c / 3.0 + t * d / 4.0)));
         let beyond = x - inside;
         Curve {
             integral: integral + beyond * (elevation + 0.5 * beyond * slope),
             elevation: elevation + beyond * slope,
             slope,
-            curvature: if beyond == 0.0 { 2.0 * c + t * 6.0 * d } else { 0.0 },
+            curvature: if beyond == 0.0 { spline::curvature(cubic, t) } else { 0.0 },
         }
     }
 }
@@ -186,42 +186,13 @@ fn take_off_line(x: &[f64], elevation: &mut [f64]) {
     }
 }
 
-/// The cubics of the spline, from its second derivatives m: h m₋ + 2(h + k) m + k m₊ = 6 (change of the chord's slope).
-fn spline(x: &[f64], elevation: &[f64]) -> Vec<[f64; 4]> {
-    let last = x.len() - 1;
-    let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let chord: Vec<f64> = (0..last).map(|k| (elevation[k + 1] - elevation[k]) / h[k]).collect();
-    let mut m = vec![0.0; last + 1];
-    // Forward elimination over the inner points; the outer derivatives follow from the third being continuous next to
-    // the ends: m_0 = m_1 + (m_1 − m_2) h_0/h_1.
-    let mut upper = vec![0.0; last];
-    for k in 1..last {
-        let (mut below, mut diagonal, mut above) = (h[k - 1], 2.0 * (h[k - 1] + h[k]), h[k]);
-        if k == 1 {
-            let ratio = h[0] / h[1];
-            diagonal += below * (1.0 + ratio);
-            above -= below * ratio;
-            below = 0.0;
-        }
-        if k == last - 1 {
-            let ratio = h[last - 1] / h[last - 2];
-            diagonal += h[k] * (1.0 + ratio);
-            below -= h[k] * ratio;
-            above = 0.0;
-        }
-        let pivot = diagonal - below * upper[k - 1];
-        upper[k] = above / pivot;
-        m[k] = (6.0 * (chord[k] - chord[k - 1]) - below * m[k - 1]) / pivot;
-    }
-    for k in (1..last - 1).rev() {
-        m[k] -= upper[k] * m[k + 1];
-    }
-    m[0] = m[1] + (m[1] - m[2]) * h[0] / h[1];
-    m[last] = m[last - 1] + (m[last - 1] - m[last - 2]) * h[last - 1] / h[last - 2];
-    (0..last)
-        .map(|k| {
-            let slope = chord[k] - h[k] * (2.0 * m[k] + m[k + 1]) / 6.0;
-            [elevation[k], slope, m[k] / 2.0, (m[k + 1] - m[k]) / (6.0 * h[k])]
-        })
-        .collect()
+/// The cubics of the spline, each by the way from its first point [m].
+fn cubics(x: &[f64], elevation: &[f64]) -> Vec<Cubic> {
+    let slopes = spline_slopes(x, elevation, [End::NotAKnot; 2]);
+    let cubic = |k: usize| {
+        let h = x[k + 1] - x[k];
+        let [a, b, c, d] = between([elevation[k], elevation[k + 1]], [h * slopes[k], h * slopes[k + 1]]);
+        [a, b / h, c / (h * h), d / (h * h * h)]
+    };
+    (0..slopes.len() - 1).map(cubic).collect()
 }

@@ -17,12 +17,12 @@
 //! 1 + i e^iθ = 2 cos α e^iα and 1 − i e^iθ = −2i sin α e^iα with α = θ/2 + π/4, both are a fixed amplitude with the sine
 //! and cosine of one angle, φ_m + α. In words of the generator that angle is a sum of whole numbers.
 
-use super::Point;
+use super::b_spline::Spline;
 use super::fft::{Complex, InverseFft};
 use super::patch::Patch;
 use super::philox::{philox4x32_lanes, words};
+use super::point::Point;
 use super::spectrum::Spectrum;
-use super::spline::Spline;
 use super::turn::{sin_cos, sin_cos_of_words, sinc};
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;

@@ -64,11 +64,6 @@ impl Spectrum {
         Ok(spectrum)
     }
 
-    /// G_d(n₀) [m³].
-    pub fn roughness(&self) -> f64 {
-        self.roughness
-    }
-
     /// Lowest and highest wave number [cycle/m].
     pub fn band(&self) -> [f64; 2] {
         self.band

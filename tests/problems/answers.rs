@@ -1,9 +1,12 @@
 //! Beams and crossings whose answers are published or in closed form.
 
+use super::continuous;
 use std::f64::consts::PI;
 
 use super::{CLAMPED, PINNED, sprung_mass};
-use spanwise::bridge::{Bridge, Fixity, Stations};
+use spanwise::bridge::Bridge;
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::support::Fixity;
 use spanwise::vehicle::Vehicle;
 
 /// A uniform bridge whose natural frequencies are known: ω = (βL)² √(EI/m) / L², with L the first span.
@@ -39,7 +42,7 @@ const UNIFORM_MASS: f64 = 8e3;
 impl Uniform {
     pub fn bridge(&self, stations_per_span: usize) -> Bridge {
         let stations = Stations::PerSpan(vec![stations_per_span]);
-        Bridge::continuous(&self.spans, self.ends, &[UNIFORM_EI], &[UNIFORM_MASS], &stations, &[]).unwrap()
+        continuous(&self.spans, self.ends, &[UNIFORM_EI], &[UNIFORM_MASS], &stations, &[]).unwrap()
     }
 
     /// βL of a circular frequency.
@@ -121,7 +124,7 @@ impl YangYau {
 
     pub fn bridge(stations: usize) -> Bridge {
         let stations = Stations::PerSpan(vec![stations]);
-        Bridge::continuous(&[Self::SPAN], [PINNED; 2], &[2.87e9 * 2.90], &[2303.0], &stations, &[]).unwrap()
+        continuous(&[Self::SPAN], [PINNED; 2], &[2.87e9 * 2.90], &[2303.0], &stations, &[]).unwrap()
     }
 
     pub fn vehicle() -> Vehicle {

@@ -5,8 +5,9 @@
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use spanwise::bridge::{Bridge, Support};
-use spanwise::flexibility::Structure;
+use spanwise::bridge::Bridge;
+use spanwise::bridge::support::Support;
+use spanwise::statics::flexibility::Structure;
 
 use super::outer_supports;
 

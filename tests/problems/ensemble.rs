@@ -3,34 +3,36 @@
 
 use std::sync::{Arc, OnceLock};
 
-use spanwise::analysis::{Analysis, Watching};
 use spanwise::bridge::Bridge;
-use spanwise::course::Passage;
-use spanwise::crossing::{ModalBridge, cross_watched};
+use spanwise::crossing::analysis::{Analysis, Preparation, Watching};
+use spanwise::crossing::cross;
+use spanwise::crossing::envelope::{Envelope, axle_loads};
+use spanwise::crossing::history::History;
 use spanwise::damping::Damping;
 use spanwise::ensemble::record::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::together::Task;
-use spanwise::ensemble::{Progress, Run, Study, Workers};
-use spanwise::envelope::{Envelope, axle_loads};
+use spanwise::ensemble::{Plan, Progress, Run, Study, Workers};
 use spanwise::error::Error;
-use spanwise::flexibility::Flexibility;
-use spanwise::history::History;
-use spanwise::influence::Quantity;
-use spanwise::lane::dispatch::{Isa, Lanes};
-use spanwise::modal::ModalDamping;
+use spanwise::lane::Lanes;
+use spanwise::lane::dispatch::Isa;
+use spanwise::modal_bridge::ModalBridge;
 use spanwise::modes::Modes;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::road::feature::Feature;
 use spanwise::road::patch::Patch;
 use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
-use spanwise::settings::{Settings, Tail};
+use spanwise::statics::flexibility::Flexibility;
+use spanwise::statics::influence::Quantity;
+use spanwise::step::bridge_step::ModalDamping;
 use spanwise::vehicle::Vehicle;
 
 use super::vehicles::{articulated, half_car, leaf};
-use super::{general_arrangements, kishan_bridge, kishan_vehicle, largest_magnitude, spread, undamped};
+use super::{general_arrangements, kishan_bridge, kishan_vehicle, largest_magnitude, spread};
 
 /// Seed of the study.
 pub const SEED: u64 = 7;
@@ -68,7 +70,7 @@ pub fn kishan_analysis(sections: usize, recovery: Recovery) -> Arc<Analysis> {
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
     let at = |i: usize| bridge.length() * i as f64 / (sections - 1) as f64;
     let sections: Vec<f64> = (0..sections).map(at).collect();
-    Arc::new(Analysis::new(&bridge, modes, &undamped(), Some(&sections), recovery, &mut || true).unwrap())
+    Arc::new(Preparation::default().sections(&sections).recovery(recovery).of(&bridge, modes, &mut || true).unwrap())
 }
 
 /// Any bridge in some modes, seen at some sections, the default ones if none are given.
@@ -80,8 +82,9 @@ pub fn analysis_of(
     recovery: Recovery,
 ) -> Arc<Analysis> {
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[]).unwrap(), modes).unwrap();
-    let sections = (!sections.is_empty()).then_some(sections);
-    Arc::new(Analysis::new(bridge, modes, damping, sections, recovery, &mut || true).unwrap())
+    let sections = (!sections.is_empty()).then(|| sections.to_vec());
+    let preparation = Preparation { damping: damping.clone(), sections, recovery };
+    Arc::new(preparation.of(bridge, modes, &mut || true).unwrap())
 }
 
 /// A rough approach of 30 m.
@@ -89,11 +92,23 @@ pub fn approach() -> Settings {
     Settings { approach: 30.0, ramp: 10.0, ..Settings::at_speed(SPEED) }
 }
 
+/// All that can be said of a study.
+pub fn study_of(
+    analysis: Arc<Analysis>,
+    kinds: Vec<Vec<Passage>>,
+    settings: Settings,
+    own: Option<(Arc<Synthesis>, u64)>,
+    advance: Option<f64>,
+    quantities: &[Quantity],
+) -> Result<Study, Error> {
+    Plan { analysis, kinds, settings, own, advance, quantities: quantities.to_vec() }.study()
+}
+
 /// The vehicle of 1973 on its bridge in three modes, each sample on its own road of class B.
 pub fn headline() -> Study {
     let kinds = vec![vec![Passage::of(kishan_vehicle())]];
     let analysis = kishan_analysis(25, Recovery::ForceSummation);
-    Study::new(analysis, kinds, approach(), Some((synthesis(), SEED)), Some(0.022_86), &ALL).unwrap()
+    study_of(analysis, kinds, approach(), Some((synthesis(), SEED)), Some(0.022_86), &ALL).unwrap()
 }
 
 /// A bump of 20 mm with smooth sides of a metre, felt through a contact patch.
@@ -111,7 +126,7 @@ pub fn mixed() -> Study {
     let kinds = vec![vec![Passage::of(two)], vec![Passage::of(articulated(1.0, 1.0))]];
     let road = Arc::new(bump(12.0));
     let settings = Settings { approach: 20.0, ramp: 5.0, tail: Tail::Fixed(0.3), road, ..Settings::at_speed(SPEED) };
-    Study::new(analysis, kinds, settings, Some((roads(POOR), SEED)), Some(0.1), &ALL).unwrap()
+    study_of(analysis, kinds, settings, Some((roads(POOR), SEED)), Some(0.1), &ALL).unwrap()
 }
 
 /// Samples of [`mixed`]: kinds in turn, speeds of which the lowest halve the step, factors on every parameter.
@@ -231,7 +246,7 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
     let omega = model.omega.iter().map(|omega| omega * root).collect();
     let own = ModalBridge { omega, damping, ..model.clone() };
     let mut watching = Watching::new(&study.analysis, &study.free, [stiffness, root * factor]);
-    let mut history = cross_watched(&own, &[passage], &settings, &mut watching, &mut || true)?;
+    let mut history = cross(&own, &[passage], &settings, &mut watching, &mut || true)?;
     let (_, envelope) = watching.conclude(&mut history, &mut || true)?;
     Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness, rates: root * factor })
 }

@@ -1,18 +1,19 @@
 //! What tests need to write down equations of motion beside those of the library.
 
-use spanwise::analysis::Analysis;
 use spanwise::bridge::Bridge;
-use spanwise::course::Passage;
+use spanwise::bridge::cubics::{Line, Mesh};
+use spanwise::crossing::analysis::Preparation;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::flexibility::Flexibility;
-use spanwise::line::{Line, Mesh};
 use spanwise::modes::Modes;
+use spanwise::passage::Passage;
+use spanwise::passage::settings::Settings;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::road::patch::Patch;
 use spanwise::road::profile::Profile;
-use spanwise::settings::Settings;
+use spanwise::statics::flexibility::Flexibility;
+use spanwise::step::friction::{Law, Stroke};
 use spanwise::vehicle::Vehicle;
 
 use super::Run;
@@ -68,8 +69,9 @@ pub fn run_all(
     sections: &[f64],
 ) -> Result<Run, Error> {
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, modes)?;
-    let sections = (!sections.is_empty()).then_some(sections);
-    let analysis = Analysis::new(bridge, modes, damping, sections, recovery, &mut || true)?;
+    let sections = (!sections.is_empty()).then(|| sections.to_vec());
+    let preparation = Preparation { damping: damping.clone(), sections, recovery };
+    let analysis = preparation.of(bridge, modes, &mut || true)?;
     let outcome = analysis.cross_all(passages, settings, &mut || true)?;
     let all = 0..analysis.rows.len();
     let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
@@ -132,7 +134,7 @@ impl Budget {
 
     /// Of a vehicle whose axles have mass, without friction in the static state; `rolls` if the speed is its own.
     pub fn of(run: &Run, vehicle: &Vehicle, road: &Road, ratio: f64, rolls: bool) -> Self {
-        use spanwise::assembly::ContactLaw;
+        use spanwise::vehicle::equations::ContactLaw;
         let (history, assembly) = (&run.outcome.history, vehicle.assembly());
         let shapes = Shapes::new(&run.bridge, history.modes);
         let mass = if rolls { &assembly.mass + &assembly.surge_mass } else { assembly.mass.clone() };
@@ -226,4 +228,11 @@ pub fn profile(ends: [f64; 2], elevation: impl Fn(f64) -> f64) -> Road {
     let x: Vec<f64> = (0..=points).map(|i| ends[0] + (ends[1] - ends[0]) * i as f64 / points as f64).collect();
     let elevations = x.iter().map(|&x| elevation(x)).collect();
     Profile::new(x, elevations, false, Patch::new(0.0).unwrap(), None).unwrap().into()
+}
+
+/// Shortening and friction where a law, coming from `before`, meets the falling line f = a − b s.
+pub fn meet(law: &Law<f64>, a: f64, b: f64, before: &Stroke<f64>) -> (f64, f64) {
+    let trial = a - b * before.shortening;
+    let friction = law.friction(trial, b, before);
+    (before.shortening + (trial - friction) / b, friction)
 }

@@ -8,18 +8,21 @@ pub mod mechanics;
 pub mod vehicles;
 
 use faer::Mat;
-use spanwise::along::Along;
-use spanwise::analysis::{Analysis, Outcome};
-use spanwise::assembly::Friction;
-use spanwise::bridge::{Bridge, Fixity, Layout, Stations, Support};
-use spanwise::course::{Drive, Passage};
+use spanwise::bridge::distribution::Along;
+use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::support::{Fixity, Support};
+use spanwise::bridge::{Bridge, Layout};
+use spanwise::crossing::analysis::{Analysis, Outcome};
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::flexibility::Flexibility;
-use spanwise::influence::Quantity;
+use spanwise::passage::settings::Settings;
+use spanwise::passage::{Drive, Passage};
 use spanwise::recovery::Recovery;
-use spanwise::settings::Settings;
-use spanwise::vehicle::{Axle, Vehicle};
+use spanwise::statics::flexibility::Flexibility;
+use spanwise::statics::influence::Quantity;
+use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::body::Axle;
+use spanwise::vehicle::body::Friction;
 
 /// One foot [m].
 pub const FOOT: f64 = 0.3048;
@@ -30,6 +33,32 @@ pub const SLUG: f64 = POUND / FOOT;
 
 pub const PINNED: Option<Fixity> = Some(Fixity::Pinned);
 pub const CLAMPED: Option<Fixity> = Some(Fixity::Clamped);
+
+/// A beam of `length` [m] on `supports`.
+pub fn beam(
+    length: f64,
+    supports: Vec<Support>,
+    flexural_rigidity: &[f64],
+    mass: &[f64],
+    stations: &Stations,
+    point_masses: &[(f64, f64)],
+) -> Result<Bridge, Error> {
+    let layout = Layout::new(length, supports, flexural_rigidity, mass);
+    layout.stations(stations.clone()).point_masses(point_masses).build()
+}
+
+/// A beam of consecutive `spans` [m], pinned between them, with these ends (`None` is free).
+pub fn continuous(
+    spans: &[f64],
+    ends: [Option<Fixity>; 2],
+    flexural_rigidity: &[f64],
+    mass: &[f64],
+    stations: &Stations,
+    point_masses: &[(f64, f64)],
+) -> Result<Bridge, Error> {
+    let (length, supports) = Bridge::consecutive(spans, ends)?;
+    beam(length, supports, flexural_rigidity, mass, stations, point_masses)
+}
 
 pub fn pinned(at: f64) -> Support {
     Support { at, fixity: Fixity::Pinned }
@@ -46,7 +75,7 @@ pub fn kishan_bridge() -> Bridge {
 
 /// The bridge of the example with another number of masses in each span.
 pub fn two_spans(stations_per_span: usize) -> Bridge {
-    Bridge::continuous(
+    continuous(
         &[60.0 * FOOT; 2],
         [PINNED; 2],
         &[4.698e9 * POUND * FOOT * FOOT],
@@ -61,9 +90,9 @@ pub fn two_spans(stations_per_span: usize) -> Bridge {
 pub fn arrangements() -> Vec<(&'static str, Bridge)> {
     let [ei, mass] = [1.9e9, 6.0e3];
     let on = |length: f64, supports: &[Support], counts: &[usize]| {
-        Bridge::new(length, supports.to_vec(), &[ei], &[mass], &Stations::PerSpan(counts.to_vec()), &[]).unwrap()
+        beam(length, supports.to_vec(), &[ei], &[mass], &Stations::PerSpan(counts.to_vec()), &[]).unwrap()
     };
-    let varied = Bridge::continuous(
+    let varied = continuous(
         &[12.0, 17.0, 14.0],
         [CLAMPED, PINNED],
         &[1.1e9, 2.9e9, 1.7e9],

@@ -1,0 +1,338 @@
+//! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
+
+use serde::{Deserialize, Serialize};
+
+use crate::bridge::Bridge;
+use crate::bridge::cubics::check_lines;
+use crate::crossing::cross;
+use crate::crossing::envelope::{Envelope, axle_loads};
+use crate::crossing::extremes::Survey;
+use crate::crossing::history::History;
+use crate::crossing::tail::{FreeRows, Watch};
+use crate::damping::Damping;
+use crate::error::Error;
+use crate::float_mode::Standard;
+use crate::imported::Given;
+use crate::memory;
+use crate::modal_bridge::ModalBridge;
+use crate::modal_bridge::ModeShapes;
+use crate::modes::Modes;
+use crate::passage::Passage;
+use crate::passage::settings::Settings;
+use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
+use crate::statics::flexibility::Flexibility;
+use crate::statics::influence::{Quantity, Responses};
+use crate::step::vibration::Reach;
+use crate::vehicle::Vehicle;
+
+/// Most memory that the histories of one quantity may take [bytes].
+pub const MAX_HISTORY_BYTES: f64 = (2u64 << 30) as f64;
+
+/// Most sections looked at: their influence lines take memory with the square of the number.
+pub const MAX_SECTIONS: usize = 2000;
+
+/// A bridge with everything that does not depend on the vehicle, worked out once.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// Positions of the sections [m].
+    pub sections: Vec<f64>,
+    /// The included modes.
+    pub modes: Modes,
+    /// The bridge in these modes.
+    pub model: ModalBridge,
+    /// The responses looked at.
+    pub responses: Responses,
+    /// Kinds of response that a bridge given by its modes came without; their lines are zero.
+    pub missing: Vec<Quantity>,
+    /// How they follow from modal states.
+    pub rows: Rows,
+    /// The same without vehicles on the bridge.
+    pub free: FreeRows,
+}
+
+/// How a bridge is prepared for crossings: undamped, looked at where it is interesting, by force summation, unless the user
+/// says otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preparation {
+    /// Damping of the bridge.
+    pub damping: Damping,
+    /// Positions of the sections [m]; none for [`Bridge::default_sections`].
+    pub sections: Option<Vec<f64>>,
+    /// How responses follow from modal states.
+    pub recovery: Recovery,
+}
+
+impl Default for Preparation {
+    fn default() -> Self {
+        Preparation { damping: Damping::Ratios(vec![0.0]), sections: None, recovery: Recovery::ForceSummation }
+    }
+}
+
+impl Preparation {
+    /// With this damping.
+    pub fn damping(mut self, damping: Damping) -> Self {
+        self.damping = damping;
+        self
+    }
+
+    /// Looking at these sections [m].
+    pub fn sections(mut self, sections: &[f64]) -> Self {
+        self.sections = Some(sections.to_vec());
+        self
+    }
+
+    /// With responses recovered in this way.
+    pub fn recovery(mut self, recovery: Recovery) -> Self {
+        self.recovery = recovery;
+        self
+    }
+
+    /// A described bridge in its `modes`; `go_on` is asked now and then.
+    pub fn of(&self, bridge: &Bridge, modes: Modes, go_on: &mut dyn FnMut() -> bool) -> Result<Analysis, Error> {
+        let Preparation { damping, sections, recovery } = self;
+        let _mode = Standard::set();
+        let sections = match sections {
+            Some(sections) => checked_sections(sections, bridge.length())?,
+            None => {
+                let sections = bridge.default_sections();
+                if sections.len() > MAX_SECTIONS {
+                    let size = format!("{} stations, supports and tenth points", sections.len());
+                    let allowed = format!("too many to look at by default, at most {MAX_SECTIONS}: give sections");
+                    return Err(Error::input("bridge", size, allowed));
+                }
+                checked_sections(&sections, bridge.length())?
+            }
+        };
+        check_memory(
+            sections.len(),
+            modes.len(),
+            bridge.supports().len(),
+            bridge.span_bounds().len() + bridge.stations().len(),
+        )?;
+        let flexibility = Flexibility::new(bridge, &sections)?;
+        let lines = modes.lines(bridge, &flexibility);
+        let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
+        let responses = Responses::new(&flexibility, bridge, &sections, go_on)?;
+        let mesh = flexibility.mesh();
+        let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
+        let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
+        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, mesh, *recovery);
+        let free = FreeRows::new(&rows, &responses, &model);
+        Ok(Analysis { sections, modes, model, responses, missing: Vec::new(), rows, free })
+    }
+
+    /// A bridge given by its flexibility or its modes, in `count` modes.
+    pub fn of_given(&self, given: &Given, count: usize) -> Result<Analysis, Error> {
+        let Preparation { damping, sections, recovery } = self;
+        let _mode = Standard::set();
+        let (modes, lines) = given.modes(count)?;
+        let (sections, chosen) = given.chosen(sections.as_deref())?;
+        check_memory(chosen.len(), count, given.responses().len(), given.mesh().panels())?;
+        let responses = given.responses().of_sections(&chosen);
+        let in_modes = given.damping(&modes, damping)?;
+        let factors = given.factors(&responses, &chosen, &modes, (damping, &in_modes));
+        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, given.mesh(), *recovery);
+        let model = ModalBridge {
+            omega: modes.omega.clone(),
+            shapes: ModeShapes::new(given.mesh(), &lines),
+            damping: in_modes,
+            narrowest_panel: given.narrowest_panel(),
+        };
+        let free = FreeRows::new(&rows, &responses, &model);
+        Ok(Analysis { sections, modes, model, responses, missing: given.missing().to_vec(), rows, free })
+    }
+}
+
+impl Analysis {
+    /// One crossing by one vehicle.
+    pub fn cross(
+        &self,
+        vehicle: &Vehicle,
+        settings: &Settings,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Outcome, Error> {
+        self.cross_all(&[Passage::of(vehicle.clone())], settings, go_on)
+    }
+
+    /// One crossing by several vehicles.
+    pub fn cross_all(
+        &self,
+        passages: &[Passage],
+        settings: &Settings,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Outcome, Error> {
+        let _mode = Standard::set();
+        let mut watching = Watching::new(self, &self.free, [1.0, 1.0]);
+        let mut history = cross(&self.model, passages, settings, &mut watching, go_on)?;
+        let (packed, envelope) = watching.conclude(&mut history, go_on)?;
+        let bounds = history.reach.as_ref().map(|reach| self.free.bounds(reach));
+        Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope, bounds })
+    }
+
+    /// An outcome that has travelled, with what did not.
+    pub fn received(&self, outcome: Outcome) -> Outcome {
+        Outcome { packed: self.rows.pack_history(&outcome.history), ..outcome }
+    }
+
+    /// The responses of one quantity at every instant, dynamic and static, row by row.
+    pub fn histories(
+        &self,
+        outcome: &Outcome,
+        quantity: Quantity,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<[Vec<f64>; 2], Error> {
+        if self.missing.contains(&quantity) {
+            let allowed = "this bridge was given without influence lines of it";
+            return Err(Error::input("quantity", quantity.name(), allowed));
+        }
+        let range = self.responses.range(quantity);
+        let bytes = 2.0 * size_of::<f64>() as f64 * outcome.history.len() as f64 * range.len() as f64;
+        let size = format!("{} positions at {} instants", range.len(), outcome.history.len());
+        let mend = "use fewer sections or a longer step";
+        memory::check("sections", size, bytes, MAX_HISTORY_BYTES, "histories there", mend)?;
+        let _mode = Standard::set();
+        self.rows.histories(&outcome.packed, range, go_on)
+    }
+
+    /// Extremes of one quantity; shears on both sides of a section count together.
+    pub fn envelope_of(&self, outcome: &Outcome, quantity: Quantity) -> Envelope {
+        let of = |quantity| {
+            let mut envelope = outcome.envelope.of(self.responses.range(quantity));
+            if self.missing.contains(&quantity) {
+                envelope.forget();
+            }
+            envelope
+        };
+        match quantity {
+            Quantity::ShearLeft | Quantity::ShearRight => of(Quantity::ShearLeft).merged(&of(Quantity::ShearRight)),
+            other => of(other),
+        }
+    }
+}
+
+/// What a crossing gives.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Outcome {
+    /// States, step after step.
+    pub history: History,
+    /// The same, made ready for recovery; it does not travel.
+    #[serde(skip)]
+    pub packed: Packed,
+    /// Extremes of all responses.
+    pub envelope: Envelope,
+    /// Extremes of the axle loads.
+    pub axle_loads: Envelope,
+    /// Largest magnitude of every response that free vibration after the end can reach; none where a vehicle stands on
+    /// the bridge.
+    pub bounds: Option<Vec<f64>>,
+}
+
+/// The survey of a crossing on its way.
+pub struct Watching<'a> {
+    analysis: &'a Analysis,
+    /// The responses that count.
+    free: &'a FreeRows,
+    /// What A and Ȧ are to be multiplied by for the rows.
+    factors: [f64; 2],
+    packed: Packed,
+    survey: Option<Survey<'a>>,
+    /// A row that could still grow when last asked, with what it had reached at so many instants.
+    growing: Option<(usize, [f64; 2], usize)>,
+}
+
+impl<'a> Watching<'a> {
+    /// By the rows of an analysis, which take A and Ȧ so many times as large; the tail is to be long enough for some of
+    /// its responses.
+    pub fn new(analysis: &'a Analysis, free: &'a FreeRows, factors: [f64; 2]) -> Self {
+        Watching { analysis, free, factors, packed: Packed::default(), survey: None, growing: None }
+    }
+
+    /// Makes ready what has been recorded since.
+    fn make_ready(&mut self, history: &mut History) {
+        let [coordinates, rates] = self.factors;
+        history.scale(self.packed.len(), coordinates, rates);
+        self.analysis.rows.pack_on(history, &mut self.packed);
+    }
+
+    /// Takes in what has been recorded since.
+    fn take_in(&mut self, history: &mut History, go_on: &mut dyn FnMut() -> bool) -> Result<&Survey<'a>, Error> {
+        self.make_ready(history);
+        let Analysis { rows, responses, .. } = self.analysis;
+        let survey = self.survey.get_or_insert_with(|| Survey::new(history, rows, responses));
+        survey.go_on(history, &self.packed, go_on)?;
+        Ok(survey)
+    }
+
+    /// What it has come to, the crossing being over.
+    pub fn conclude(
+        mut self,
+        history: &mut History,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(Packed, Envelope), Error> {
+        self.take_in(history, go_on)?;
+        let Watching { analysis, packed, survey, .. } = self;
+        let survey = survey.unwrap_or_else(|| Survey::new(history, &analysis.rows, &analysis.responses));
+        let envelope = survey.conclude(history, &packed);
+        Ok((packed, envelope))
+    }
+}
+
+impl Watch for Watching<'_> {
+    fn enough(
+        &mut self,
+        history: &mut History,
+        reach: &Reach<f64>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Error> {
+        let (free, [coordinates, rates]) = (self.free, self.factors);
+        let reach = reach.clone().scaled(coordinates, rates);
+        let load: f64 = history.static_loads.iter().sum();
+        self.make_ready(history);
+        // One row that can still grow is enough to go on, and little work to ask: all others can wait.
+        if let (Some((row, seen, instants)), Some(survey)) = (&mut self.growing, &self.survey)
+            && survey.is_past()
+        {
+            for now in self.packed.instants(*instants..self.packed.len()) {
+                let value = self.analysis.rows.value(free.responses[*row], now);
+                *seen = [seen[0].max(value), seen[1].min(value)];
+            }
+            *instants = self.packed.len();
+            if free.unsettled(*row, &reach, load, *seen) {
+                return Ok(false);
+            }
+        }
+        let survey = self.take_in(history, go_on)?;
+        let reached = |row: usize| survey.reached(free.responses[row]);
+        let mut rows = 0..free.responses.len();
+        let growing = rows.find(|&row| free.unsettled(row, &reach, load, reached(row))).map(|row| (row, reached(row)));
+        self.growing = growing.map(|(row, seen)| (row, seen, self.packed.len()));
+        Ok(growing.is_none())
+    }
+}
+
+/// Refuses sections whose influence lines there is no memory for: twice each, as lines and in the rows, over the panels
+/// between them and a number of other points, for deflection, moment and both shears, and for the supports; or modes whose
+/// lines there is none for.
+fn check_memory(sections: usize, modes: usize, supports: usize, points: usize) -> Result<(), Error> {
+    let (lines, panels) = (4 * sections + 2 * supports, sections + points);
+    check_lines("sections", sections, 2.0 * lines as f64, panels, "influence lines of so many")?;
+    check_lines("modes", modes, 2.0 * modes as f64, panels, "lines of so many along the bridge")
+}
+
+fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {
+    if sections.is_empty() || sections.len() > MAX_SECTIONS {
+        let allowed = format!("give 1 to {MAX_SECTIONS} positions in metres");
+        return Err(Error::input("sections", format!("{} positions", sections.len()), allowed));
+    }
+    for (i, &x) in sections.iter().enumerate() {
+        if !(x.is_finite() && x >= 0.0 && x <= length) {
+            let allowed = format!("must lie on the beam, 0 to {length} m");
+            return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
+        }
+        if i > 0 && x - sections[i - 1] <= crate::bridge::cubics::COINCIDENT * length {
+            let allowed = format!("must be greater than the section before it, {} m", sections[i - 1]);
+            return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
+        }
+    }
+    Ok(sections.to_vec())
+}

@@ -1,0 +1,158 @@
+//! How long the tail after a crossing is: until no response can exceed what it has reached.
+
+use crate::crossing::history::History;
+use crate::error::Error;
+use crate::lane::Lane;
+use crate::modal_bridge::ModalBridge;
+use crate::recovery::Rows;
+use crate::statics::influence::{Quantity, Responses};
+use crate::step::bridge_step::ModalDamping;
+use crate::step::vibration::Reach;
+
+/// Part of an extreme by which the tail may still have exceeded it.
+const TOLERANCE: f64 = 1e-3;
+
+/// Response that is nothing but rounding, relative to what the static loads can come to.
+const ROUNDING: f64 = 1e-9;
+
+/// Parts of an extreme, and of the largest of its kind along the bridge, which to exceed is worth a word.
+const WORTH: [f64; 2] = [1e-2, 1e-3];
+
+/// Responses of the bridge in free vibration, as sums over the modal coordinates.
+#[derive(Debug, Clone)]
+pub struct FreeRows {
+    /// Which of all responses each row is.
+    pub responses: Vec<usize>,
+    modes: usize,
+    /// What multiplies the modal coordinates, row by row.
+    factors: Vec<f64>,
+    /// Length of what multiplies the modal velocities besides, by row.
+    rest: Vec<f64>,
+    /// The kind of each, shears on both sides of a section being one.
+    kinds: Vec<usize>,
+    /// What of each kind is rounding, by the static loads of all axles [unit/N].
+    rounding: [f64; KINDS],
+}
+
+/// Kinds of response: deflections, moments, shears, reactions, moments of clamps.
+const KINDS: usize = 5;
+
+impl FreeRows {
+    /// Of all responses.
+    pub fn new(rows: &Rows, responses: &Responses, model: &ModalBridge) -> Self {
+        let modes = model.omega.len();
+        let (mut factors, mut rest) = (Vec::with_capacity(rows.len() * modes), Vec::with_capacity(rows.len()));
+        for r in 0..rows.len() {
+            if !rows.by_rates() {
+                factors.extend((0..modes).map(|m| rows.factor(r, m)));
+                rest.push(0.0);
+                continue;
+            }
+            let inertia = |m: usize| -rows.factor(r, modes + m);
+            factors.extend((0..modes).map(|m| inertia(m) * model.omega[m].powi(2)));
+            rest.push(match &model.damping {
+                ModalDamping::Classical(_) => 0.0,
+                ModalDamping::Coupled(d) => {
+                    let rate = |m: usize| (0..modes).map(|i| inertia(i) * d[(i, m)]).sum::<f64>() + rows.factor(r, m);
+                    (0..modes).map(|m| rate(m).powi(2)).sum::<f64>().sqrt()
+                }
+            });
+        }
+        let kind = |quantity: Quantity| match quantity {
+            Quantity::Deflection => 0,
+            Quantity::Moment => 1,
+            Quantity::ShearLeft | Quantity::ShearRight => 2,
+            Quantity::Reaction => 3,
+            Quantity::ClampMoment => 4,
+        };
+        let mut kinds = vec![0; rows.len()];
+        for quantity in Quantity::ALL {
+            kinds[responses.range(quantity)].fill(kind(quantity));
+        }
+        let slowest = model.omega.iter().copied().fold(f64::INFINITY, f64::min);
+        let length = model.shapes.mesh().length();
+        let deflection = model.shapes.largest_sum_of_squares() / slowest.powi(2);
+        let rounding = [deflection, length, 1.0, 1.0, length].map(|largest| ROUNDING * largest);
+        FreeRows { responses: (0..rows.len()).collect(), modes, factors, rest, kinds, rounding }
+    }
+
+    /// Some of them.
+    pub fn of(&self, some: impl Iterator<Item = usize> + Clone) -> Self {
+        FreeRows {
+            responses: some.clone().collect(),
+            modes: self.modes,
+            factors: some.clone().flat_map(|r| self.row(r).0).copied().collect(),
+            rest: some.clone().map(|r| self.rest[r]).collect(),
+            kinds: some.map(|r| self.kinds[r]).collect(),
+            rounding: self.rounding,
+        }
+    }
+
+    fn row(&self, r: usize) -> (&[f64], f64) {
+        (&self.factors[r * self.modes..(r + 1) * self.modes], self.rest[r])
+    }
+
+    /// Largest magnitude of every response.
+    pub fn bounds<L: Lane>(&self, reach: &Reach<L>) -> Vec<L> {
+        (0..self.rest.len()).map(|r| reach.of(self.row(r))).collect()
+    }
+
+    /// In which lanes no response can exceed by more than a thousandth what it has reached, its largest and its smallest
+    /// being those that `seen` tells; the static `load` is that of all axles [N].
+    #[inline(always)]
+    pub fn settled<L: Lane>(&self, reach: &Reach<L>, load: L, seen: impl Fn(usize) -> [L; 2]) -> L::Mask {
+        let mut unsettled = L::never();
+        for r in 0..self.rest.len() {
+            unsettled = unsettled | self.unsettled(r, reach, load, seen(r));
+            if !L::any(!unsettled) {
+                break;
+            }
+        }
+        !unsettled
+    }
+
+    /// In which lanes one row can.
+    #[inline(always)]
+    pub fn unsettled<L: Lane>(&self, r: usize, reach: &Reach<L>, load: L, [max, min]: [L; 2]) -> L::Mask {
+        let (bound, floor) = (reach.of(self.row(r)), L::splat(self.rounding[self.kinds[r]]) * load);
+        let beyond = |extreme: L| extreme + L::splat(TOLERANCE) * extreme.magnitude() + floor;
+        // What is no number is not settled.
+        !bound.less(beyond(max)) | !bound.less(beyond(-min))
+    }
+
+    /// How far free vibration can exceed what has been seen, in parts of the largest of its kind along the bridge, and
+    /// the row where it is most: twice its number, and one more of the smallest. Zero where that is not worth a word.
+    #[inline(always)]
+    pub fn growth<L: Lane>(&self, reach: &Reach<L>, seen: impl Fn(usize) -> [L; 2]) -> [L; 2] {
+        let zero = L::splat(0.0);
+        let mut largest = [zero; KINDS];
+        for (r, &kind) in self.kinds.iter().enumerate() {
+            let [max, min] = seen(r);
+            largest[kind] = max.magnitude().larger(min.magnitude()).larger(largest[kind]);
+        }
+        let (mut growth, mut side_of_row) = (zero, zero);
+        for (r, &kind) in self.kinds.iter().enumerate() {
+            let (bound, [max, min]) = (reach.of(self.row(r)), seen(r));
+            for (side, extreme) in [max, -min].into_iter().enumerate() {
+                let excess = bound - extreme;
+                let least = L::splat(WORTH[0]) * extreme.magnitude() + L::splat(WORTH[1]) * largest[kind];
+                let part = excess / largest[kind];
+                let more = !(!least.less(excess) | !growth.less(part));
+                growth = L::select(more, part, growth);
+                side_of_row = L::select(more, L::splat((2 * r + side) as f64), side_of_row);
+            }
+        }
+        [growth, side_of_row]
+    }
+}
+
+/// Looks at a crossing on its way.
+pub trait Watch {
+    /// Whether nothing that follows what has been recorded can matter, given what free vibration can reach.
+    fn enough(
+        &mut self,
+        history: &mut History,
+        reach: &Reach<f64>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<bool, Error>;
+}

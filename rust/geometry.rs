@@ -1,0 +1,56 @@
+//! What the step asks about the contacts: where they stand, how they move, and what lies under them.
+
+pub mod free;
+pub mod pavement;
+pub mod prescribed;
+
+use crate::lane::Lane;
+use crate::step::newmark::Coordinate;
+
+/// The road under a wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface<L> {
+    /// Elevation, up, from the line that all vertical motion of the vehicle is counted from [m].
+    pub elevation: L,
+    /// Its first derivative along the bridge [-].
+    pub slope: L,
+    /// Its second derivative [1/m].
+    pub curvature: L,
+}
+
+impl Surface<f64> {
+    /// Level road.
+    pub const LEVEL: Self = Surface { elevation: 0.0, slope: 0.0, curvature: 0.0 };
+}
+
+/// Where the contacts stand and how they move.
+pub trait Geometry<L: Lane> {
+    /// Moves on by one step: contacts whose motion is prescribed go to where they are then.
+    fn advance(&mut self);
+
+    /// Whether no contact gains or loses speed at the end of the next step, so that nothing pushes the vehicles along
+    /// the road.
+    fn steady(&self) -> bool {
+        false
+    }
+
+    /// Position from the left end of the bridge, speed and acceleration along it.
+    fn motion(&self, contact: usize) -> Coordinate<L>;
+
+    /// Φ⁰: the modes' deflections under the contact [kg^-½], zero off the bridge.
+    fn shapes(&self, contact: usize, shapes: &mut [L]);
+
+    /// Slope of the mode under the contact [kg^-½/m].
+    fn slope(&self, contact: usize, mode: usize) -> L;
+
+    /// Second derivative of the mode under the contact [kg^-½/m²].
+    fn curvature(&self, contact: usize, mode: usize) -> L;
+
+    /// The road under the contact.
+    fn surface(&self, contact: usize) -> Surface<L>;
+
+    /// The [`Stepper::coupling`](crate::step::stepper::Stepper::coupling) of this place, where it is known: the same in all lanes.
+    fn coupling(&self) -> Option<&[f64]> {
+        None
+    }
+}

@@ -1,0 +1,92 @@
+"""The files of the Rust core depend on each other in one direction: no circle among them, however long."""
+
+import re
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent / "rust"
+
+# `use a::{b, c::d};` and `a::b::c` elsewhere, from the crate, from the parent, or from a file declared here.
+USE = re.compile(r"^\s*(?:pub\s+|pub\(\w+\)\s+)?use\s+([\w:{}\s,*]+);", re.MULTILINE)
+PATH = re.compile(r"\b(?:crate|super)(?:::\w+)+")
+
+
+def files(root: Path) -> dict[tuple[str, ...], Path]:
+    """Every file of the crate by its module path."""
+    return {p.relative_to(root).with_suffix("").parts: p for p in root.rglob("*.rs")}
+
+
+def leaves(tree: str) -> list[str]:
+    """The paths in a tree of a `use`."""
+    head, brace, rest = tree.partition("{")
+    if not brace:
+        return [tree]
+    parts, depth = [""], 0
+    for c in rest[: rest.rindex("}")]:
+        depth += {"{": 1, "}": -1}.get(c, 0)
+        if c == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += c
+    return [head + path for part in parts for path in leaves(part) if part]
+
+
+def uses(module: tuple[str, ...], text: str, known: dict[tuple[str, ...], Path]) -> set[tuple[str, ...]]:
+    """The files that this one takes something from."""
+    text = re.sub(r"//.*", "", text)
+    trees = [re.sub(r"\s+", "", tree) for tree in USE.findall(text)]
+    paths = [path for tree in trees for path in leaves(tree)] + PATH.findall(USE.sub("", text))
+    found = set()
+    for path in paths:
+        parts = path.split("::")
+        if parts[0] == "crate":
+            place = tuple(parts[1:])
+        elif parts[0] == "super":
+            up = sum(part == "super" for part in parts)
+            place = (*module[:-up], *parts[up:])
+        else:
+            place = (*module, *parts) if (*module, parts[0]) in known else ()
+        # The longest beginning that is a file: what follows is in it.
+        place = next((place[:n] for n in range(len(place), 0, -1) if place[:n] in known), ())
+        if place and place != module:
+            found.add(place)
+    return found
+
+
+def circle(root: Path) -> list[str]:
+    """A circle among the files, or nothing."""
+    known = files(root)
+    # The front page names every room, and nothing takes from it.
+    graph = {m: uses(m, p.read_text(encoding="utf-8"), known) for m, p in known.items() if m != ("lib",)}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return ["::".join(module) for module in error.args[1]]
+    return []
+
+
+def test_no_file_depends_on_itself_by_way_of_others() -> None:
+    assert circle(ROOT) == []
+
+
+@pytest.mark.parametrize(
+    "back", ["use crate::a;", "use super::super::a::{x, y};", "fn f() { crate::a::x() }", "pub use crate::{z, a::x};"]
+)
+def test_a_circle_is_found(tmp_path: Path, back: str) -> None:
+    (tmp_path / "b").mkdir()
+    (tmp_path / "lib.rs").write_text("mod a; mod b;")
+    (tmp_path / "a.rs").write_text("use crate::b::c::{self, Deep};")
+    (tmp_path / "b.rs").write_text("pub mod c;")
+    (tmp_path / "b" / "c.rs").write_text("pub struct Deep;")
+    assert circle(tmp_path) == []
+    (tmp_path / "b" / "c.rs").write_text(back)
+    assert set(circle(tmp_path)) == {"a", "b::c"}
+
+
+def test_a_child_of_its_parent_is_a_circle(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a.rs").write_text("mod b;\nuse b::f;")
+    (tmp_path / "a" / "b.rs").write_text("use super::Own;")
+    assert set(circle(tmp_path)) == {"a", "a::b"}
