@@ -36,6 +36,9 @@ pub fn down_to_mm(x: f64) -> f64 {
     (1e3 * x).floor() / 1e3 + 0.0
 }
 
+/// Way from its start whose line a vehicle feels a measured road from [m].
+const FITTED: f64 = 10.0;
+
 /// A road surface; copies share their data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Road {
@@ -120,15 +123,23 @@ impl Road {
 
     /// The line from which a vehicle feels the road that starts at `start` and goes over the bridge as far as `far` [m].
     ///
-    /// Of a measured profile it is the chord between the two, so that heights above the sea and grades do not count; of a
-    /// feature the level at the start. Random roads are deviations from the line already.
+    /// Of a measured profile it is the least-squares line of the first 10 m, so that heights above the sea and grades do not
+    /// count, and that a vehicle starts along the road where that curves; of a feature the level at the start. Random roads
+    /// are deviations from the line already.
     pub fn datum(&self, start: f64, far: f64) -> Datum {
-        let ends = self.parts.iter().fold([0.0; 2], |[near, beyond], part| match part {
-            Part::Profile(profile) => [near + profile.at(start).elevation, beyond + profile.at(far).elevation],
-            Part::Feature(feature) => [near, beyond].map(|sum| sum + feature.at(start).elevation),
-            Part::Random(_) | Part::Datum(_) => [near, beyond],
+        let features = self.parts.iter().map(|part| match part {
+            Part::Feature(feature) => feature.at(start).elevation,
+            _ => 0.0,
         });
-        Datum::through([start, ends[0]], [far, ends[1]])
+        let measured = |x: f64| {
+            let profiles = self.parts.iter().map(|part| match part {
+                Part::Profile(profile) => profile.at(x).elevation,
+                _ => 0.0,
+            });
+            profiles.sum()
+        };
+        let end = start + (far - start).clamp(-FITTED, FITTED);
+        Datum::fitted(start, end, measured).raised(features.sum())
     }
 
     /// The road off a line.

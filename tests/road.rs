@@ -611,7 +611,12 @@ fn heights_and_grades_go_with_the_datum() {
         };
         for ends in [[-20.0, 30.0], [35.0, 0.0]] {
             let plain = off(0.0, 0.0, ends);
-            assert!(ends.iter().all(|&end| plain.at(end).elevation.abs() < 1e-16));
+            // Neither mean nor slope is left of what it begins with.
+            let ahead = (ends[1] - ends[0]).signum();
+            let begins: Vec<f64> =
+                (0..50).map(|k| plain.at(ends[0] + ahead * 10.0 / 49.0 * f64::from(k)).elevation).collect();
+            let moment = |power: i32| (0..50).map(|k| f64::from(k).powi(power) * begins[k as usize]).sum::<f64>();
+            assert!(moment(0).abs() < 1e-14 && moment(1).abs() < 1e-12);
             for (height, grade) in [(500.0, 0.0), (0.0, 0.06), (-80.0, -0.1)] {
                 let other = off(height, grade, ends);
                 for x in grid(-29.0, 39.0, 0.0713) {
@@ -637,7 +642,10 @@ fn the_datum_of_a_sum_is_the_sum() {
     assert!((off(&step(0.0)) - 0.3).abs() < 1e-13);
     let both = Road::sum([random.clone(), step(-90.0), step(2.0), measured]);
     assert!((off(&both) - 0.3 - random.at(7.0).elevation).abs() < 1e-13);
-    assert!((both.datum(-20.0, 30.0).slope - 0.02).abs() < 1e-15);
+    assert!((both.datum(-20.0, 30.0).slope - 0.02).abs() < 1e-14);
+    // Of a way of less than 10 m, all of it.
+    let kinked = profile(&grid(-30.0, 40.0, 0.5), |x| if x < -16.0 { 0.02 * x } else { -0.32 }, 0.0);
+    assert!((kinked.datum(-20.0, -17.5).slope - 0.02).abs() < 1e-4);
     // Nothing else of the road is another.
     let felt = both.off(both.datum(-20.0, 30.0));
     assert_eq!((felt.ends(), felt.period()), (both.ends(), both.period()));

@@ -138,10 +138,10 @@ def cross(
     Notes
     -----
     What of a road moves a vehicle up and down is what it is off a straight line, the datum of its
-    way: of a `Profile` the chord between the start of the approach and the far end of the bridge,
-    of single features the level at that start; random roads count as they are. So neither the
-    height of a profile above the sea nor a grade changes anything at a prescribed speed. What rolls
-    freely is slowed or pushed by the grade from the start, by g times its rise.
+    way: of a `Profile` the least-squares line of the first 10 m from the start of the approach, of
+    single features the level at that start; random roads count as they are. So neither the height
+    of a profile above the sea nor a grade changes anything at a prescribed speed. What rolls freely
+    is slowed or pushed by the grade from the start, by g times its rise.
 
     An axle that drives on to a *free* end of the bridge loads it suddenly with all it carries, and
     its wheel drops off the deflected end as it leaves. The bridge rings from that at any speed, so

@@ -2,6 +2,9 @@
 
 use super::point::Point;
 
+/// Places to which a line is fitted.
+const PLACES: usize = 50;
+
 /// A straight line, r(x) = elevation + slope (x − start).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Datum {
@@ -12,9 +15,25 @@ pub struct Datum {
 }
 
 impl Datum {
-    /// Through two points (x, r) [m], the first at the start of a way.
-    pub fn through([start, elevation]: [f64; 2], [far, beyond]: [f64; 2]) -> Self {
-        Datum { start, elevation, slope: (beyond - elevation) / (far - start) }
+    /// The least-squares line of elevations [m] at even spacing from `start` to `end` [m].
+    pub fn fitted(start: f64, end: f64, elevation: impl Fn(f64) -> f64) -> Self {
+        let spacing = (end - start) / (PLACES - 1) as f64;
+        // Counted from the first, so that a height takes no digits.
+        let (first, middle) = (elevation(start), 0.5 * (PLACES - 1) as f64);
+        let (mut sum, mut moment, mut square) = (0.0, 0.0, 0.0);
+        for k in 0..PLACES {
+            let (off, from_middle) = (elevation(start + k as f64 * spacing) - first, k as f64 - middle);
+            sum += off;
+            moment += from_middle * off;
+            square += from_middle * from_middle;
+        }
+        let per_place = moment / square;
+        Datum { start, elevation: first + sum / PLACES as f64 - per_place * middle, slope: per_place / spacing }
+    }
+
+    /// Higher by so much [m].
+    pub fn raised(self, height: f64) -> Self {
+        Datum { elevation: self.elevation + height, ..self }
     }
 
     /// Whether it is the level at zero.

@@ -66,8 +66,8 @@ class Profile(Road):
     reaches beyond, the tangent at the end goes on.
 
     In a crossing neither the height above the sea nor the grade counts for vertical motion: that is
-    counted from the chord of the profile between the start of the approach and the far end of the
-    bridge. `detrend` is for what else is made of the elevations.
+    counted from the least-squares line of the first 10 m from the start of the approach. `detrend`
+    is for what else is made of the elevations.
 
     Of units that nobody tells, elevations in mm are noticed, in cm too, and in inches on roads of
     class C or rougher. Not noticed are inches on better roads, which look like those of class F or
