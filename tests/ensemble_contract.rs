@@ -8,7 +8,7 @@ use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
 use crate::problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
 use spanwise::bridge::Bridge;
 use spanwise::damping::Damping;
-use spanwise::ensemble::record::Column;
+use spanwise::ensemble::results::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::{BLOCK, Study};
 use spanwise::lane::dispatch::Isa;

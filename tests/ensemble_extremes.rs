@@ -10,7 +10,7 @@ use crate::problems::{PINNED, kishan_vehicle, observed_order, sprung_mass};
 use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::record::{Column, stop_or_step};
+use spanwise::ensemble::results::{Column, stop_or_step};
 use spanwise::ensemble::sample::Samples;
 use spanwise::lane::dispatch::Isa;
 use spanwise::passage::Passage;

@@ -4,7 +4,7 @@ use crate::problems::ensemble::study_of;
 use crate::problems::ensemble::*;
 use crate::problems::kishan_vehicle;
 use crate::problems::vehicles::{half_car, leaf};
-use spanwise::ensemble::record::{Failure, Results};
+use spanwise::ensemble::results::{Failure, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;

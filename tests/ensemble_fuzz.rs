@@ -12,7 +12,7 @@ use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
 use spanwise::bridge::Bridge;
 use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::ensemble::record::{Column, stop_or_step};
+use spanwise::ensemble::results::{Column, stop_or_step};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::lane::dispatch::Isa;
 use spanwise::passage::Passage;

@@ -11,7 +11,7 @@ use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Run;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::record::{Column, Results};
+use spanwise::ensemble::results::{Column, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::lane::dispatch::Isa;
 use spanwise::passage::Passage;

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use spanwise::ensemble::watch::Watched;
+use spanwise::ensemble::statistics::Watched;
 use spanwise::lane::Lane;
 use spanwise::lane::bits::Bits;
 use spanwise::lane::dispatch::{InLanes, Isa, with};

@@ -13,7 +13,7 @@ use spanwise::crossing::history::History;
 use spanwise::crossing::tail::Watch;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::record::Column;
+use spanwise::ensemble::results::Column;
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::error::Error;
 use spanwise::lane::dispatch::Isa;

@@ -3,13 +3,13 @@
 
 use std::ops::Range;
 
+use super::bounds::survey;
 use super::few;
-use super::look::Look;
-use super::shared::Shared;
-use super::stretch::{Stretch, Widths};
-use super::survey::survey;
+use super::placing::Shared;
+use super::selection::Look;
+use super::statistics::{Ride, Watched, watch_moment, watch_stop};
 use super::table::{CHUNK, Chunk, Moment, Table};
-use super::watch::{Ride, Watched, watch_moment, watch_stop};
+use super::tape::{Stretch, Widths};
 use crate::crossing::tail::FreeRows;
 use crate::lane::Lane;
 use crate::lane::{Lanes, Work};

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::record;
+use super::results;
 use super::table::{self, Advance, Passing, SIDES, Stop};
-use super::together;
 use crate::passage::step_length::MAX_STEPS;
 
 /// The steps of one kind of march.
@@ -96,7 +95,7 @@ impl Hands<'_> {
         let Some(path) = self.path else { return (f64::NAN, f64::NAN) };
         let h = path.advance / speed;
         let position = |step: usize| path.advance * step as f64 + path.start;
-        match record::stop_or_step(instant) {
+        match results::stop_or_step(instant) {
             Ok(stop) => self.passings.get(stop / SIDES).map_or((f64::NAN, f64::NAN), |passing| {
                 (Stop::between(passing.step, passing.fraction, h), passing.position)
             }),
@@ -104,7 +103,7 @@ impl Hands<'_> {
                 let (time, there) = (step as f64 * h, position(step));
                 // One that is not given ends with a step.
                 let Some(tail) = self.tail else { return (time, there) };
-                let (last, fraction) = together::end(path.steps, h, tail);
+                let (last, fraction) = table::end(path.steps, h, tail);
                 if step < last || fraction == 1.0 {
                     return (time, there);
                 }

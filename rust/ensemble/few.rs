@@ -3,9 +3,9 @@
 //! To bound responses chunk by chunk pays where many samples share the influence of their loads. For a few it is less
 //! work to evaluate every response at every step, from the same numbers in the same order: the extremes are the same bits.
 
-use super::look::Look;
-use super::stretch::Stretch;
-use super::watch::Watched;
+use super::selection::Look;
+use super::statistics::Watched;
+use super::tape::Stretch;
 use crate::crossing::extremes::Watched as Block;
 use crate::lane::Lane;
 use crate::recovery::{Place, Placed, Rows, WIDTH};

@@ -2,10 +2,11 @@
 
 use super::block::KEPT;
 use super::clock::Pace;
+use super::placing::COUPLED;
 use super::sample::Samples;
-use super::shared::COUPLED;
+use super::study::{March, Study};
 use super::table::{Below, CHUNK, PARTS, READY, Stop};
-use super::{March, Study, Workers};
+use super::workers::Workers;
 use crate::error::Error;
 use crate::memory;
 use crate::recovery::Place;

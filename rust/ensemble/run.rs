@@ -1,59 +1,25 @@
 //! A run of a study: samples in portions on all cores, and what comes of them.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError, RwLock};
 
 use rayon::prelude::*;
 
 use super::clock::{Clock, Pace};
-use super::record::{Failure, Layout, Record, Results};
+use super::results::{Failure, Layout, Record, Results};
 use super::room::Room;
 use super::sample::Samples;
 use super::shelf::{FEW, Shared, Shelf};
-use super::together::{Part, Task};
-use super::{March, Study, alone};
+use super::side_by_side::{Part, Task};
+use super::single;
+use super::study::{March, Study};
+use super::workers::{BLOCK, Progress, Workers};
 use crate::error::Error;
 use crate::float_mode::Standard;
-use crate::lane::dispatch::{InLanes, Isa, with};
+use crate::lane::dispatch::{InLanes, with};
 use crate::memory;
 use crate::threads;
-
-/// Most samples that a worker takes at a time unless told otherwise.
-pub const BLOCK: usize = 256;
-
-/// Who does the work, and in which portions; none of it changes a result.
-#[derive(Debug, Clone, Copy)]
-pub struct Workers {
-    /// The instruction set.
-    pub isa: Isa,
-    /// Threads at most: no more than are of use are started.
-    pub threads: usize,
-    /// Samples that a worker takes at a time; without it [`BLOCK`], or fewer where there is not much to share out.
-    pub chunk: Option<usize>,
-}
-
-impl Workers {
-    /// As many as the machine has, or as the caller wants.
-    pub fn new(threads: Option<usize>) -> Result<Self, Error> {
-        let threads = match threads {
-            Some(0) => return Err(Error::input("threads", 0, "must be 1 or more")),
-            Some(threads) if threads > 4096 => return Err(Error::input("threads", threads, "must be at most 4096")),
-            Some(threads) => threads,
-            None => std::thread::available_parallelism().map_or(1, usize::from),
-        };
-        Ok(Workers { isa: Isa::chosen()?, threads, chunk: None })
-    }
-}
-
-/// What others may see of a run, and whether it shall go on.
-#[derive(Debug, Default)]
-pub struct Progress {
-    /// Samples done.
-    pub done: AtomicUsize,
-    /// Set to end the run.
-    pub stop: AtomicBool,
-}
 
 impl Study {
     /// Runs all samples.
@@ -135,7 +101,7 @@ impl Study {
             } else {
                 for (&member, record) in members.iter().zip(&mut records) {
                     let sample = member as usize;
-                    let mut cross = || alone::cross(self, &layout, samples, sample, record, &mut || go_on());
+                    let mut cross = || single::cross(self, &layout, samples, sample, record, &mut || go_on());
                     let beside = {
                         let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
                         cross()
@@ -196,7 +162,7 @@ impl Study {
     fn ask_too_much(&self, samples: &Samples, failures: &[Failure]) -> bool {
         let refused = |f: &Failure| {
             f.cause.is_input()
-                && alone::vehicles(&self.kinds[samples.kind(f.sample)].passages, samples, f.sample).is_ok()
+                && single::vehicles(&self.kinds[samples.kind(f.sample)].passages, samples, f.sample).is_ok()
         };
         !failures.is_empty() && failures.len() == samples.count && failures.iter().all(refused)
     }

@@ -6,10 +6,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::record::Layout;
-use super::shared::Couplings;
+use super::placing::Couplings;
+use super::results::Layout;
+use super::side_by_side;
+use super::study::{March, Study};
 use super::table::Table;
-use super::{March, Study, together};
 
 /// To march so many samples one after the other is less work than to lay out the geometry for all.
 pub const FEW: usize = 2;
@@ -50,7 +51,7 @@ impl Shelf {
         }
         let table = study.table(self.march, self.laid_out);
         if !layout.own_statics {
-            self.stays.get_or_init(|| together::at_rest(study, self.march.0, &table));
+            self.stays.get_or_init(|| side_by_side::at_rest(study, self.march.0, &table));
         }
         Arc::clone(shared.insert(Arc::new(Shared { table, couplings: OnceLock::new() })))
     }

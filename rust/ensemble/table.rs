@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::look::Look;
+use super::selection::Look;
 use crate::geometry::Surface;
 use crate::geometry::pavement::{Pavement, Share};
 use crate::modal_bridge::ModeShapes;
@@ -411,4 +411,22 @@ fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec
         })
     };
     passings(path, &at).into_iter().flat_map(of).collect()
+}
+
+/// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
+pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
+    if tail == 0.0 {
+        return (steps, 1.0);
+    }
+    let end = steps as f64 * h + tail;
+    let mut last = steps.max((end / h) as usize);
+    // The first step that comes so far, as a single crossing counts them one by one.
+    while last > steps && (last - 1) as f64 * h >= end - 1e-9 * h {
+        last -= 1;
+    }
+    while (last as f64) * h < end - 1e-9 * h {
+        last += 1;
+    }
+    let time = last as f64 * h;
+    (last, if time > end + 1e-9 * h { 1.0 - (time - end) / h } else { 1.0 })
 }

@@ -17,9 +17,9 @@ use super::vehicle::{PyBody, PyVehicle, parts_of};
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
 use crate::crossing::analysis::Analysis;
 use crate::ensemble::clock;
-use crate::ensemble::record::{Column, Failure, Layout, fingerprint as fingerprint_of};
+use crate::ensemble::results::{Column, Failure, Layout, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
-use crate::ensemble::{Plan, Run, Study, Workers, alone};
+use crate::ensemble::{Plan, Run, Workers, single};
 use crate::error::Error;
 use crate::memory;
 use crate::passage::Passage;
@@ -265,7 +265,7 @@ pub fn varied<'py>(
         let bodies = vehicle.bodies().iter().map(parts_of).collect();
         (PyVehicle(vehicle), bodies)
     };
-    let vehicles = preparing(py, coordinates(&event), move |_| alone::vehicles(&event, &samples, 0))?;
+    let vehicles = preparing(py, coordinates(&event), move |_| single::vehicles(&event, &samples, 0))?;
     Ok(vehicles.into_iter().map(with_bodies).collect())
 }
 
@@ -311,7 +311,7 @@ pub fn static_loads<'py>(
             let kind = samples.kind(sample);
             match samples.varies_loads() {
                 // A sample whose vehicle cannot be has no results either.
-                true => match alone::vehicles(&kinds[kind], &samples, sample) {
+                true => match single::vehicles(&kinds[kind], &samples, sample) {
                     Ok(vehicles) => all.extend(loads(&vehicles)),
                     Err(_) => all.resize(all.len() + axles, f64::NAN),
                 },

@@ -5,10 +5,10 @@
 //! a glance at one step of every chunk finds values that the extremes must reach, and only those chunks are looked at
 //! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
 
-use super::look::Row;
-use super::stretch::Stretch;
+use super::selection::Row;
+use super::statistics::{Watched, value};
 use super::table::{Chunk, PART, PARTS, middle};
-use super::watch::{Watched, value};
+use super::tape::Stretch;
 use crate::lane::Lane;
 
 /// Looks for the extremes of every response at the steps of a stretch: `chunks` of the influence of the loads, none where

@@ -1,8 +1,8 @@
 //! What is seen of samples side by side as they pass: extremes and when, sums of squares, wheels off the road.
 
-use super::look::Look;
-use super::stretch::{Stretch, Widths};
+use super::selection::Look;
 use super::table::{Moment, Stop};
+use super::tape::{Stretch, Widths};
 use crate::lane::Lane;
 
 /// Largest and smallest so far, and when: the number of a step, or of a stop.

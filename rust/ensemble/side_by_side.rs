@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
-use super::alone::{Scaled, passages};
 use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
-use super::record::{Column, Failure, Layout, Record, instant_of_stop};
+use super::placing::{Couplings, Shared};
+use super::results::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
-use super::shared::{Couplings, Shared};
-use super::table::Table;
-use super::watch::Watched;
-use super::{Kind, Study};
+use super::single::{Scaled, passages};
+use super::statistics::Watched;
+use super::study::{Kind, Study};
+use super::table::{Table, end};
 use crate::error::Error;
 use crate::lane::Lane;
 use crate::lane::Lanes;
@@ -20,24 +20,6 @@ use crate::step::bridge_step::ModalDamping;
 use crate::step::stepper::{Scheme, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vibration::most_steps;
-
-/// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
-pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
-    if tail == 0.0 {
-        return (steps, 1.0);
-    }
-    let end = steps as f64 * h + tail;
-    let mut last = steps.max((end / h) as usize);
-    // The first step that comes so far, as a single crossing counts them one by one.
-    while last > steps && (last - 1) as f64 * h >= end - 1e-9 * h {
-        last -= 1;
-    }
-    while (last as f64) * h < end - 1e-9 * h {
-        last += 1;
-    }
-    let time = last as f64 * h;
-    (last, if time > end + 1e-9 * h { 1.0 - (time - end) / h } else { 1.0 })
-}
 
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::Study;
-use super::record::{Column, Layout, Record};
+use super::results::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
+use super::study::Study;
 use crate::crossing;
 use crate::crossing::analysis::Watching;
 use crate::crossing::envelope::{Extremes, axle_loads};
