@@ -1,4 +1,4 @@
-"""The files of the Rust core depend on each other in one direction: no circle among them, however long."""
+"""The files of the Rust core depend on each other in one direction: no circle, however long."""
 
 import re
 from graphlib import CycleError, TopologicalSorter
@@ -6,14 +6,16 @@ from pathlib import Path
 
 import pytest
 
+Module = tuple[str, ...]
+
 ROOT = Path(__file__).resolve().parent.parent / "rust"
 
-# `use a::{b, c::d};` and `a::b::c` elsewhere, from the crate, from the parent, or from a file declared here.
+# `use a::{b, c::d};`, and `a::b::c` elsewhere: from the crate, the parent, or a file declared here.
 USE = re.compile(r"^\s*(?:pub\s+|pub\(\w+\)\s+)?use\s+([\w:{}\s,*]+);", re.MULTILINE)
 PATH = re.compile(r"\b(?:crate|super)(?:::\w+)+")
 
 
-def files(root: Path) -> dict[tuple[str, ...], Path]:
+def files(root: Path) -> dict[Module, Path]:
     """Every file of the crate by its module path."""
     return {p.relative_to(root).with_suffix("").parts: p for p in root.rglob("*.rs")}
 
@@ -33,7 +35,7 @@ def leaves(tree: str) -> list[str]:
     return [head + path for part in parts for path in leaves(part) if part]
 
 
-def uses(module: tuple[str, ...], text: str, known: dict[tuple[str, ...], Path]) -> set[tuple[str, ...]]:
+def uses(module: Module, text: str, known: dict[Module, Path]) -> set[Module]:
     """The files that this one takes something from."""
     text = re.sub(r"//.*", "", text)
     trees = [re.sub(r"\s+", "", tree) for tree in USE.findall(text)]
@@ -59,7 +61,11 @@ def circle(root: Path) -> list[str]:
     """A circle among the files, or nothing."""
     known = files(root)
     # The front page names every room, and nothing takes from it.
-    graph = {m: uses(m, p.read_text(encoding="utf-8"), known) for m, p in known.items() if m != ("lib",)}
+    graph = {
+        module: uses(module, path.read_text(encoding="utf-8"), known)
+        for module, path in known.items()
+        if module != ("lib",)
+    }
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:
@@ -72,7 +78,13 @@ def test_no_file_depends_on_itself_by_way_of_others() -> None:
 
 
 @pytest.mark.parametrize(
-    "back", ["use crate::a;", "use super::super::a::{x, y};", "fn f() { crate::a::x() }", "pub use crate::{z, a::x};"]
+    "back",
+    [
+        "use crate::a;",
+        "use super::super::a::{x, y};",
+        "fn f() { crate::a::x() }",
+        "pub use crate::{z, a::x};",
+    ],
 )
 def test_a_circle_is_found(tmp_path: Path, back: str) -> None:
     (tmp_path / "b").mkdir()
