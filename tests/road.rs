@@ -621,7 +621,9 @@ fn heights_and_grades_go_with_the_datum() {
                 let other = off(height, grade, ends);
                 for x in grid(-29.0, 39.0, 0.0713) {
                     let (one, its) = (plain.at(x), other.at(x));
-                    assert!((one.elevation - its.elevation).abs() < 1e-12, "{height} m, {grade}, at {x} m");
+                    // The line is fitted to 10 m and carried on over seven times as many, and its rounding with it.
+                    let apart = (one.elevation - its.elevation).abs();
+                    assert!(apart < 1e-11, "{height} m, {grade}, at {x} m: {apart:e}");
                     assert!((one.slope - its.slope).abs() < 1e-11 && (one.curvature - its.curvature).abs() < 1e-10);
                 }
             }
