@@ -6,6 +6,7 @@ pub mod extremes;
 pub mod history;
 pub mod tail;
 pub mod time_loop;
+pub mod watched;
 
 use crate::crossing::history::History;
 use crate::crossing::tail::Watch;

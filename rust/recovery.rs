@@ -12,6 +12,7 @@ use crate::bridge::cubics::{Line, Mesh};
 use crate::crossing::history::History;
 use crate::damping::Damping;
 use crate::error::Error;
+use crate::lane::wide::Wide;
 use crate::modes::Modes;
 use crate::spline::value;
 use crate::statics::influence::Responses;
@@ -69,6 +70,9 @@ pub const WIDTH: usize = 8;
 
 /// One number for each of [`WIDTH`] neighbouring responses.
 pub type Block = [f64; WIDTH];
+
+/// The same as lanes, responses side by side.
+pub type Responding = Wide<WIDTH>;
 
 /// Instants made ready for [`Rows::block`], one after another.
 #[derive(Debug, Clone, Default)]

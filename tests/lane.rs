@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use spanwise::ensemble::statistics::Watched;
+use spanwise::crossing::watched::Watched;
 use spanwise::lane::Lane;
 use spanwise::lane::bits::Bits;
 use spanwise::lane::dispatch::{InLanes, Isa, with};

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use crate::crossing::envelope::{Envelope, Extreme, Extremes};
 use crate::crossing::history::History;
+use crate::crossing::watched::Watched;
 use crate::error::Error;
 use crate::lane::Lane;
-use crate::recovery::{Block, Instant, Packed, Place, Rows, WIDTH};
+use crate::recovery::{Instant, Packed, Place, Responding, Rows, WIDTH};
 use crate::statics::influence::{Quantity, Responses};
 
 /// Instants between two questions whether to go on.
@@ -27,7 +28,7 @@ pub struct Survey<'a> {
     dynamic: Extremes,
     at_rest: Extremes,
     /// At the instants of the history, dynamic and static.
-    watched: Vec<[Watched; 2]>,
+    watched: Vec<[Watched<Responding>; 2]>,
     /// The instant of a stop.
     between: Packed,
 }
@@ -58,7 +59,7 @@ impl<'a> Survey<'a> {
             passing: Passing::new(history, rows, responses),
             dynamic: Extremes::none(rows.len()),
             at_rest: Extremes::none(rows.len()),
-            watched: vec![[Watched::NOTHING; 2]; rows.blocks()],
+            watched: vec![[Watched::nothing(); 2]; rows.blocks()],
             between: Packed::default(),
         }
     }
@@ -81,7 +82,7 @@ impl<'a> Survey<'a> {
     /// Largest and smallest of a response so far.
     pub fn reached(&self, r: usize) -> [f64; 2] {
         let [dynamic, _] = &self.watched[r / WIDTH];
-        let (max, min) = (dynamic.max[r % WIDTH], dynamic.min[r % WIDTH]);
+        let (max, min) = (dynamic.max.get(r % WIDTH), dynamic.min.get(r % WIDTH));
         [max.larger(self.dynamic.max[r].value), min.smaller(self.dynamic.min[r].value)]
     }
 
@@ -97,8 +98,8 @@ impl<'a> Survey<'a> {
             let mut number = instants.start as f64;
             for now in packed.instants(instants.clone()) {
                 let (d, s) = self.rows.block(b, now);
-                dynamic.take(&d, number);
-                at_rest.take(&s, number);
+                dynamic.take(Responding::from(d), Responding::splat(number));
+                at_rest.take(Responding::from(s), Responding::splat(number));
                 number += 1.0;
             }
             *watched = [dynamic, at_rest];
@@ -113,8 +114,8 @@ impl<'a> Survey<'a> {
         for r in 0..self.rows.len() {
             let (b, i) = (r / WIDTH, r % WIDTH);
             let [dynamic, at_rest] = self.watched[b];
-            for at in [dynamic.max_at[i], dynamic.min_at[i], at_rest.max_at[i], at_rest.min_at[i]] {
-                let instant = at as usize;
+            for at in [dynamic.max_at, dynamic.min_at, at_rest.max_at, at_rest.min_at] {
+                let instant = at.get(i) as usize;
                 let (time, position) = (history.time[instant], history.positions[instant * history.axles]);
                 for now in packed.instants(instant..instant + 1) {
                     let (d, s) = self.rows.block(b, now);
@@ -295,37 +296,6 @@ impl Interpolated {
             loads: &self.loads,
             static_loads,
             places: &self.places,
-        }
-    }
-}
-
-/// Largest and smallest so far of one block of responses, and the instants at which they occurred.
-///
-/// Looked at in every step, so without a branch: the number of an instant is an `f64` and chosen along with the value.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Watched {
-    pub(crate) max: Block,
-    pub(crate) max_at: Block,
-    pub(crate) min: Block,
-    pub(crate) min_at: Block,
-}
-
-impl Watched {
-    pub(crate) const NOTHING: Self = Watched {
-        max: [f64::NEG_INFINITY; WIDTH],
-        max_at: [0.0; WIDTH],
-        min: [f64::INFINITY; WIDTH],
-        min_at: [0.0; WIDTH],
-    };
-
-    #[inline(always)]
-    pub(crate) fn take(&mut self, values: &Block, instant: f64) {
-        for (i, &value) in values.iter().enumerate() {
-            let (above, below) = (value > self.max[i], value < self.min[i]);
-            self.max[i] = if above { value } else { self.max[i] };
-            self.max_at[i] = if above { instant } else { self.max_at[i] };
-            self.min[i] = if below { value } else { self.min[i] };
-            self.min_at[i] = if below { instant } else { self.min_at[i] };
         }
     }
 }

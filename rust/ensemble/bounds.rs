@@ -6,9 +6,10 @@
 //! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
 
 use super::selection::Row;
-use super::statistics::{Watched, value};
+use super::statistics::value;
 use super::table::{Chunk, PART, PARTS, middle};
 use super::tape::Stretch;
+use crate::crossing::watched::Watched;
 use crate::lane::Lane;
 
 /// Looks for the extremes of every response at the steps of a stretch: `chunks` of the influence of the loads, none where

@@ -4,11 +4,10 @@
 //! work to evaluate every response at every step, from the same numbers in the same order: the extremes are the same bits.
 
 use super::selection::Look;
-use super::statistics::Watched;
 use super::tape::Stretch;
-use crate::crossing::extremes::Watched as Block;
+use crate::crossing::watched::Watched;
 use crate::lane::Lane;
-use crate::recovery::{Place, Placed, Rows, WIDTH};
+use crate::recovery::{Place, Placed, Responding, Rows, WIDTH};
 
 /// Looks for the extremes of every row at the steps of a stretch of one sample; `places` are those of its axles, by step
 /// and axle, none where there is no axle on the bridge.
@@ -31,22 +30,18 @@ pub fn survey<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Look, str
     let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
     let mut all = watched.iter();
     for rows in of_blocks() {
-        let mut seen = Block::NOTHING;
+        let mut seen = [Watched::<f64>::nothing(); WIDTH];
         for (row, own) in rows.iter().zip(&mut all) {
-            let i = row.response % WIDTH;
-            (seen.max[i], seen.max_at[i]) = (own.max.get(0), own.max_at.get(0));
-            (seen.min[i], seen.min_at[i]) = (own.min.get(0), own.min_at.get(0));
+            seen[row.response % WIDTH] = own.one(0);
         }
-        steps.blocks.push((rows[0].response / WIDTH, seen));
+        steps.blocks.push((rows[0].response / WIDTH, Watched::beside(&seen)));
     }
     // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
     pulp::Arch::new().dispatch(&mut steps);
     let mut all = watched.iter_mut();
     for (rows, (_, seen)) in of_blocks().zip(&steps.blocks) {
         for (row, own) in rows.iter().zip(&mut all) {
-            let i = row.response % WIDTH;
-            let [max, max_at, min, min_at] = [seen.max, seen.max_at, seen.min, seen.min_at].map(|of| L::splat(of[i]));
-            *own = Watched { max, max_at, min, min_at };
+            *own = Watched::beside(&[seen.one(row.response % WIDTH)]);
         }
     }
 }
@@ -59,7 +54,7 @@ struct Steps<'s> {
     axles: usize,
     coordinates: Vec<f64>,
     placed: Vec<Placed>,
-    blocks: Vec<(usize, Block)>,
+    blocks: Vec<(usize, Watched<Responding>)>,
 }
 
 impl pulp::WithSimd for &mut Steps<'_> {
@@ -73,7 +68,8 @@ impl pulp::WithSimd for &mut Steps<'_> {
             let mut own = *seen;
             let mut number = self.from as f64;
             for (i, coordinates) in self.coordinates.chunks_exact(width).enumerate() {
-                own.take(&self.rows.block_of(*b, coordinates, &self.placed[i * axles..][..axles]), number);
+                let values = self.rows.block_of(*b, coordinates, &self.placed[i * axles..][..axles]);
+                own.take(Responding::from(values), Responding::splat(number));
                 number += 1.0;
             }
             *seen = own;

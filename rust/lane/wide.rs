@@ -39,6 +39,13 @@ operator!(Sub, sub, -=);
 operator!(Mul, mul, *=);
 operator!(Div, div, /=);
 
+impl<const N: usize> From<[f64; N]> for Wide<N> {
+    #[inline(always)]
+    fn from(numbers: [f64; N]) -> Self {
+        Wide(numbers)
+    }
+}
+
 impl<const N: usize> Neg for Wide<N> {
     type Output = Self;
 
