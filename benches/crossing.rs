@@ -17,13 +17,14 @@ use spanwise::passage::settings::Settings;
 use spanwise::passage::{Direction, Drive, Passage};
 use spanwise::statics::flexibility::Flexibility;
 use spanwise::step::vibration::Reach;
+use spanwise::stop_token::StopToken;
 use spanwise::vehicle::body::Friction;
 
 /// Looks at nothing: steps alone.
 struct Blind;
 
 impl Watch for Blind {
-    fn enough(&mut self, _: &mut History, _: &Reach<f64>, _: &mut dyn FnMut() -> bool) -> Result<bool, Error> {
+    fn enough(&mut self, _: &mut History, _: &Reach<f64>, _: StopToken<'_>) -> Result<bool, Error> {
         Ok(false)
     }
 }
@@ -32,15 +33,16 @@ fn kishan_1973(c: &mut Criterion) {
     let bridge = kishan_bridge();
     let vehicle = kishan_vehicle();
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let prepare = || Preparation::default().of(&bridge, modes.clone(), &mut || true).unwrap();
+    let prepare = || Preparation::default().of(&bridge, modes.clone(), StopToken::NEVER).unwrap();
     let analysis = prepare();
     let rolling = Settings { drive: Drive::ConstantTraction, step: Some(1e-3), ..Settings::at_speed(22.86) };
     let steady = Settings { drive: Drive::ConstantSpeed, ..rolling.clone() };
     let passages = [Passage::of(vehicle.clone())];
-    let steps = |settings: &Settings| cross(&analysis.model, &passages, settings, &mut Blind, &mut || true).unwrap();
+    let steps =
+        |settings: &Settings| cross(&analysis.model, &passages, settings, &mut Blind, StopToken::NEVER).unwrap();
 
     let mut group = c.benchmark_group("crossing/kishan_1973");
-    group.bench_function("modes=3", |b| b.iter(|| analysis.cross(&vehicle, &rolling, &mut || true).unwrap()));
+    group.bench_function("modes=3", |b| b.iter(|| analysis.cross(&vehicle, &rolling, StopToken::NEVER).unwrap()));
     group.bench_function("prepare", |b| b.iter(prepare));
     group.bench_function("steps/constant-traction", |b| {
         b.iter(|| steps(&rolling));
@@ -54,12 +56,12 @@ fn kishan_1973(c: &mut Criterion) {
     group.bench_function("recovery/extremes", |b| {
         b.iter(|| {
             let mut survey = Survey::new(&history, &analysis.rows, &analysis.responses);
-            survey.go_on(&history, &packed, &mut || true).unwrap();
+            survey.go_on(&history, &packed, StopToken::NEVER).unwrap();
             survey.conclude(&history, &packed)
         });
     });
     group.bench_function("recovery/histories", |b| {
-        b.iter(|| analysis.rows.histories(&packed, 0..analysis.rows.len(), &mut || true).unwrap());
+        b.iter(|| analysis.rows.histories(&packed, 0..analysis.rows.len(), StopToken::NEVER).unwrap());
     });
     group.finish();
 }
@@ -68,7 +70,7 @@ fn kishan_1973(c: &mut Criterion) {
 fn vehicles(c: &mut Criterion) {
     let bridge = kishan_bridge();
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
-    let analysis = Preparation::default().of(&bridge, modes, &mut || true).unwrap();
+    let analysis = Preparation::default().of(&bridge, modes, StopToken::NEVER).unwrap();
     let settings = Settings { step: Some(1e-3), ..Settings::at_speed(22.86) };
     let half_car = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
     let opposing = Passage { direction: Direction::Left, lane: 1, ..Passage::of(half_car.clone()) };
@@ -79,11 +81,11 @@ fn vehicles(c: &mut Criterion) {
     ];
     let mut group = c.benchmark_group("crossing");
     for (name, passages) in cases {
-        let history = cross(&analysis.model, &passages, &settings, &mut Blind, &mut || true).unwrap();
+        let history = cross(&analysis.model, &passages, &settings, &mut Blind, StopToken::NEVER).unwrap();
         println!("{name}: {} steps, {} axles", history.len() - 1, history.axles);
-        group.bench_function(name, |b| b.iter(|| analysis.cross_all(&passages, &settings, &mut || true).unwrap()));
+        group.bench_function(name, |b| b.iter(|| analysis.cross_all(&passages, &settings, StopToken::NEVER).unwrap()));
         group.bench_function(format!("{name}/steps"), |b| {
-            b.iter(|| cross(&analysis.model, &passages, &settings, &mut Blind, &mut || true).unwrap());
+            b.iter(|| cross(&analysis.model, &passages, &settings, &mut Blind, StopToken::NEVER).unwrap());
         });
     }
     group.finish();

@@ -7,6 +7,7 @@
 #[path = "../tests/problems/mod.rs"]
 mod problems;
 
+use spanwise::stop_token::StopToken;
 use std::hint::black_box;
 use std::process::ExitCode;
 
@@ -36,7 +37,7 @@ fn main() -> ExitCode {
     if case == "crossing" {
         let vehicle = kishan_vehicle();
         for _ in 0..count {
-            black_box(study.analysis.cross(&vehicle, &kishan_settings(), &mut || true).unwrap());
+            black_box(study.analysis.cross(&vehicle, &kishan_settings(), StopToken::NEVER).unwrap());
         }
         println!("{count}");
         return ExitCode::SUCCESS;
@@ -49,7 +50,7 @@ fn main() -> ExitCode {
         } else {
             let settings = Settings { step: Some(WAY / 20.0), ..study.settings.clone() };
             for kind in &study.kinds {
-                black_box(study.analysis.cross_all(&kind.passages, &settings, &mut || true).unwrap());
+                black_box(study.analysis.cross_all(&kind.passages, &settings, StopToken::NEVER).unwrap());
             }
         }
         println!("{count}");

@@ -20,16 +20,17 @@ use crate::passage::planned::Course;
 use crate::passage::settings::Settings;
 use crate::passage::step_length::Steps;
 use crate::passage::{Direction, Passage};
+use crate::stop_token::StopToken;
 use crate::vehicle::MAX_AXLES;
 
-/// Crosses the bridge with one vehicle or several at once, while `watch` looks at it. `go_on` is asked now and then; when it
+/// Crosses the bridge with one vehicle or several at once, while `watch` looks at it. `stop` is asked now and then; when it
 /// says no, the crossing ends as interrupted.
 pub fn cross(
     model: &ModalBridge,
     passages: &[Passage],
     settings: &Settings,
     watch: &mut dyn Watch,
-    go_on: &mut dyn FnMut() -> bool,
+    stop: StopToken<'_>,
 ) -> Result<History, Error> {
     settings.check()?;
     if passages.is_empty() {
@@ -70,9 +71,9 @@ pub fn cross(
         let mirrored = courses.iter().map(|course| course.direction == Direction::Left).collect();
         let start = (0..owner.len()).map(|axle| motion(0, axle)).collect();
         let mut geometry = Free::new(ground, free, mirrored, start, rates);
-        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, go_on)
+        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
     } else {
         let mut geometry = Prescribed::new(ground, motion, steps.count, rates);
-        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, go_on)
+        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
     }
 }

@@ -28,6 +28,7 @@
 //! use spanwise::passage::{Passage, settings::Settings};
 //! use spanwise::road::{patch::Patch, random::Synthesis, spectrum::Spectrum};
 //! use spanwise::statics::{flexibility::Flexibility, influence::Quantity};
+//! use spanwise::stop_token::StopToken;
 //! use spanwise::vehicle::{Vehicle, body::Axle};
 //!
 //! // 20 m, EI = 6 GN m², 8 t/m, its mass in eight places; and a lorry of 20 t.
@@ -36,13 +37,13 @@
 //! let lorry = Vehicle::new(20e3, 80e3, 1.2, vec![axle(2.0), axle(-2.0)])?;
 //!
 //! // What does not depend on the vehicle, in three modes, seen at midspan.
-//! let go_on = &mut || true;
+//! let stop = StopToken::NEVER;
 //! let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[])?, 3)?;
 //! let damped = Preparation::default().damping(Damping::Ratios(vec![0.02]));
-//! let analysis = damped.sections(&[10.0]).of(&bridge, modes, go_on)?;
+//! let analysis = damped.sections(&[10.0]).of(&bridge, modes, stop)?;
 //!
 //! // On a smooth road. At rest the moment is largest with one axle at midspan and the other 4 m away: 5 P + 3 P.
-//! let crossed = analysis.cross(&lorry, &Settings::at_speed(20.0), go_on)?;
+//! let crossed = analysis.cross(&lorry, &Settings::at_speed(20.0), stop)?;
 //! let moments = analysis.envelope_of(&crossed, Quantity::Moment);
 //! let [dynamic, at_rest] = [&moments.dynamic, &moments.at_rest].map(|extremes| extremes.max[0].value);
 //! assert!((at_rest / (8.0 * 10e3 * 9.80665) - 1.0).abs() < 1e-9);
@@ -75,6 +76,7 @@ pub mod error;
 pub mod float_mode;
 pub mod memory;
 pub mod spline;
+pub mod stop_token;
 pub mod threads;
 
 pub mod bridge;

@@ -6,6 +6,8 @@ mod ensemble;
 mod road;
 mod vehicle;
 
+use crate::stop_token::StopToken;
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -42,24 +44,20 @@ impl From<Error> for PyErr {
 
 /// Runs `work` with the interpreter released. Every 100 ms its question whether to go on attaches again and lets Python
 /// handle signals; what a handler raises, such as `KeyboardInterrupt`, ends the work and is raised.
-fn interruptible<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send,
-) -> PyResult<T> {
-    let mut raised = None;
-    let result = py.detach(|| {
-        let mut last = Instant::now();
-        let mut go_on = || {
-            if last.elapsed() < SIGNAL_INTERVAL {
-                return true;
+fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(StopToken<'_>) -> Result<T, Error> + Send) -> PyResult<T> {
+    let (result, raised) = py.detach(|| {
+        let (last, raised) = (Cell::new(Instant::now()), Cell::new(None));
+        let stopped = || {
+            if last.get().elapsed() < SIGNAL_INTERVAL {
+                return false;
             }
             let answer = Python::attach(|py| py.check_signals());
-            last = Instant::now();
-            let ok = answer.is_ok();
-            raised = answer.err();
-            ok
+            last.set(Instant::now());
+            let stopped = answer.is_err();
+            raised.set(answer.err());
+            stopped
         };
-        work(&mut go_on)
+        (work(StopToken::when(&stopped)), raised.take())
     });
     match raised {
         Some(error) => Err(error),
@@ -74,7 +72,7 @@ const SMALL: usize = 150;
 fn preparing<T: Send + 'static>(
     py: Python<'_>,
     order: usize,
-    work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send + 'static,
+    work: impl FnOnce(StopToken<'_>) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
     aside(py, order > SMALL, work)
 }
@@ -83,10 +81,10 @@ fn preparing<T: Send + 'static>(
 fn aside<T: Send + 'static>(
     py: Python<'_>,
     long: bool,
-    work: impl FnOnce(&mut dyn FnMut() -> bool) -> Result<T, Error> + Send + 'static,
+    work: impl FnOnce(StopToken<'_>) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
     match long {
-        true => attended(py, 0, None, move |progress| work(&mut || !progress.stop.load(Ordering::Relaxed))),
+        true => attended(py, 0, None, move |progress| work(StopToken::when(&|| progress.stop.load(Ordering::Relaxed)))),
         false => interruptible(py, work),
     }
 }

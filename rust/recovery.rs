@@ -4,6 +4,7 @@
 //! R = ρ·A + Σ g(x_k) P_k, with ρ_m the response to the static loads MΦΩ² of mode m and
 //! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::force_summation`], for reading and for testing.
 
+use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use faer::Mat;
@@ -419,12 +420,7 @@ impl Rows {
     }
 
     /// The responses of a range at every instant, dynamic and static, row by row.
-    pub fn histories(
-        &self,
-        packed: &Packed,
-        range: Range<usize>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<[Vec<f64>; 2], Error> {
+    pub fn histories(&self, packed: &Packed, range: Range<usize>, stop: StopToken<'_>) -> Result<[Vec<f64>; 2], Error> {
         let count = range.len() * packed.len();
         let mut filling = Filling {
             rows: self,
@@ -437,9 +433,7 @@ impl Rows {
         for from in (0..packed.len()).step_by(POLL_EVERY) {
             filling.instants = from..(from + POLL_EVERY).min(packed.len());
             arch.dispatch(&mut filling);
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
+            stop.check()?;
         }
         Ok(filling.out)
     }

@@ -18,6 +18,7 @@ pub mod random;
 pub mod spectrum;
 pub mod turn;
 
+use crate::stop_token::StopToken;
 use std::sync::Arc;
 
 use crate::error::{Error, finite};
@@ -153,24 +154,17 @@ impl Road {
         Road { parts }
     }
 
-    /// The same surface averaged over another length [m] than its contact patches, exactly; `go_on` is asked before each
+    /// The same surface averaged over another length [m] than its contact patches, exactly; `stop` is asked before each
     /// part whether to.
-    pub fn averaged(&self, length: f64, go_on: &mut dyn FnMut() -> bool) -> Result<Self, Error> {
+    pub fn averaged(&self, length: f64, stop: StopToken<'_>) -> Result<Self, Error> {
         let patch = Patch::new(length)?;
-        self.remade(|profile| profile.under(patch), patch, go_on)
+        self.remade(|profile| profile.under(patch), patch, stop)
     }
 
     /// The surface with its profiles as `profile` makes them and all else under a contact patch.
-    fn remade(
-        &self,
-        profile: impl Fn(&Profile) -> Profile,
-        patch: Patch,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Self, Error> {
+    fn remade(&self, profile: impl Fn(&Profile) -> Profile, patch: Patch, stop: StopToken<'_>) -> Result<Self, Error> {
         let parts = self.parts.iter().map(|part| {
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
+            stop.check()?;
             Ok(match part {
                 Part::Random(random) => Part::Random(Arc::new(random.under(patch)?)),
                 Part::Profile(measured) => Part::Profile(Arc::new(profile(measured))),

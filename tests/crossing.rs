@@ -11,6 +11,7 @@ use spanwise::passage::Drive;
 use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::statics::influence::Quantity;
+use spanwise::stop_token::StopToken;
 use spanwise::vehicle::Vehicle;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
@@ -302,6 +303,6 @@ fn refusals() {
     let long = continuous(&[100.0], [PINNED; 2], &[1e11], &[1e4], &Stations::PerSpan(vec![9]), &[]).unwrap();
     let run = run(&long, &kishan_vehicle(), &Settings::at_speed(5.0), 3, &undamped(), ForceSummation, &[0.0]).unwrap();
     let settings = Settings { step: Some(1e-3), ..Settings::at_speed(5.0) };
-    let stopped = run.analysis.cross(&kishan_vehicle(), &settings, &mut || false).map(|_| ());
+    let stopped = run.analysis.cross(&kishan_vehicle(), &settings, StopToken::when(&|| true)).map(|_| ());
     assert_eq!(stopped, Err(Error::Interrupted));
 }

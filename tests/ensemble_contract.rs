@@ -1,6 +1,7 @@
 //! The contract of an ensemble: a sample is a crossing, to the bit, however the work is done.
 
 use crate::problems::ensemble::study_of;
+use spanwise::stop_token::StopToken;
 use std::sync::Arc;
 
 use crate::problems::ensemble::*;
@@ -271,6 +272,6 @@ fn several_vehicles_are_a_crossing_each() {
 /// The way per step that a single crossing at the speed of the study chooses [m].
 fn found_advance(study: &Study) -> f64 {
     let settings = Settings { road: Arc::new(synthesis().road(SEED, 4).into()), ..study.settings.clone() };
-    let outcome = study.analysis.cross(&kishan_vehicle(), &settings, &mut || true).unwrap();
+    let outcome = study.analysis.cross(&kishan_vehicle(), &settings, StopToken::NEVER).unwrap();
     outcome.history.step * settings.speed
 }

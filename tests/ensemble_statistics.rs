@@ -2,6 +2,7 @@
 
 use crate::problems::continuous;
 use crate::problems::ensemble::study_of;
+use spanwise::stop_token::StopToken;
 use std::sync::Arc;
 
 use crate::problems::ensemble::*;
@@ -288,7 +289,7 @@ fn a_road_that_repeats_is_refused_as_in_a_single_crossing() {
             let kinds = vec![vec![Passage::of(vehicle.clone())]];
             let study = study_of(Arc::clone(&analysis), kinds, settings.clone(), own(), None, &[Quantity::Moment]);
             let road = Arc::new(synthesis().road(SEED, 0).into());
-            let single = analysis.cross(&vehicle, &Settings { road, ..settings }, &mut || true);
+            let single = analysis.cross(&vehicle, &Settings { road, ..settings }, StopToken::NEVER);
             assert_eq!((study.is_err(), single.is_err()), (refused, refused), "ramp {ramp}, {over}");
         }
     }

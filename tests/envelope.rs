@@ -6,6 +6,7 @@ use spanwise::crossing::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
 use spanwise::passage::settings::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
 use spanwise::statics::influence::Quantity;
+use spanwise::stop_token::StopToken;
 
 /// Two evaluations of one response, relative to its largest value.
 const ROUNDING: f64 = 1e-12;
@@ -84,7 +85,7 @@ fn histories_of_one_quantity() {
     let run = crossed(&arrangements().swap_remove(4).1, ForceSummation);
     for quantity in Quantity::ALL {
         let range = run.analysis.responses.range(quantity);
-        let found = run.analysis.histories(&run.outcome, quantity, &mut || true).unwrap();
+        let found = run.analysis.histories(&run.outcome, quantity, StopToken::NEVER).unwrap();
         for (found, all) in found.iter().zip(&run.responded) {
             let expected: Vec<f64> =
                 all.chunks_exact(run.analysis.rows.len()).flat_map(|row| row[range.clone()].to_vec()).collect();

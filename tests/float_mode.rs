@@ -5,6 +5,7 @@
 
 use crate::problems::continuous;
 use crate::problems::ensemble::study_of;
+use spanwise::stop_token::StopToken;
 use std::arch::asm;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -162,8 +163,8 @@ fn single_crossings_do_not_depend_on_the_mode_of_the_caller() {
     let settings = Settings { road, tail: Tail::Fixed(0.2), ..approach() };
     let cross = || {
         let analysis = given.analysis();
-        let outcome = analysis.cross(&given.vehicle(), &settings, &mut || true).unwrap();
-        let histories = analysis.histories(&outcome, Quantity::Moment, &mut || true).unwrap();
+        let outcome = analysis.cross(&given.vehicle(), &settings, StopToken::NEVER).unwrap();
+        let histories = analysis.histories(&outcome, Quantity::Moment, StopToken::NEVER).unwrap();
         (outcome.history, outcome.envelope, histories)
     };
     let expected = cross();

@@ -6,6 +6,7 @@ use spanwise::bridge::Bridge;
 use spanwise::bridge::cubics::{Line, Mesh};
 use spanwise::statics::flexibility::{Flexibility, Restraint, Structure};
 use spanwise::statics::influence::{self, Quantity, Responses};
+use spanwise::stop_token::StopToken;
 
 /// Two routes to one number, the elements' the worse conditioned one, relative to the largest of its kind.
 const ROUNDING: f64 = 1e-9;
@@ -140,7 +141,7 @@ fn mirror_images() {
         let turned: Vec<f64> = sections.iter().rev().map(|x| length - x).collect();
         let [one, two] = [(&bridge, &sections), (&image, &turned)].map(|(bridge, sections)| {
             let flexibility = Flexibility::new(bridge, sections).unwrap();
-            let responses = Responses::new(&flexibility, bridge, sections, &mut || true).unwrap();
+            let responses = Responses::new(&flexibility, bridge, sections, StopToken::NEVER).unwrap();
             (flexibility, responses)
         });
         for quantity in Quantity::ALL {

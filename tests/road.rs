@@ -1,5 +1,6 @@
 //! Roads: random ones against the spectrum of their class, measured and single features against their own definitions.
 
+use spanwise::stop_token::StopToken;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
@@ -668,7 +669,7 @@ fn quarter_car(n: f64) -> Complex<f64> {
 }
 
 fn iri(road: &Road, start: f64, end: f64) -> Result<f64, Error> {
-    golden_car::iri(road, start, end, &mut || true)
+    golden_car::iri(road, start, end, StopToken::NEVER)
 }
 
 #[test]
@@ -677,7 +678,7 @@ fn the_golden_car_follows_its_transfer_function() {
         let n = 1.0 / wavelength;
         let road = profile(&grid(0.0, 800.0, 0.02), |x| 0.01 * (TAU * n * x).sin(), 0.0);
         let mut response = Vec::new();
-        golden_car::drive(&road, 0.0, 800.0, &mut || true, |_, slope| response.push(slope)).unwrap();
+        golden_car::drive(&road, 0.0, 800.0, StopToken::NEVER, |_, slope| response.push(slope)).unwrap();
         // 400 m, a whole number of waves of 100 steps a metre, long after the start.
         let tail = &response[response.len() - 40_000..];
         let found = (2.0 * tail.iter().map(|d| d * d).sum::<f64>() / tail.len() as f64).sqrt();
@@ -729,11 +730,11 @@ fn the_golden_car_feels_all_points() {
 #[test]
 fn segments_are_one_drive() {
     let road = random(0.0, 5, 0);
-    let go_on = &mut || true;
+    let stop = StopToken::NEVER;
     // From the first point on there is no lead-in, and the segments are the parts of the index of the whole.
     let x = grid(0.0, 130.25, 0.05);
     let measured = profile(&x, |x| road.at(x).elevation, 0.0);
-    let found = golden_car::segments(&measured, 0.0, 130.25, 10.0, go_on).unwrap();
+    let found = golden_car::segments(&measured, 0.0, 130.25, 10.0, stop).unwrap();
     assert_eq!((found.values.len(), found.lead_in), (13, 0.0));
     assert_eq!(found.edges[12..], [120.0, 130.0]);
     // The first lacks half an average of response, and the whole has half an average more at the end.
@@ -744,7 +745,7 @@ fn segments_are_one_drive() {
     // somewhere, and a longer way before changes next to nothing.
     let [near, far] = [20.0, 1e4].map(|before| {
         let measured = profile(&grid(60.0 - f64::min(before, 50.0), 130.0, 0.05), |x| road.at(x).elevation, 0.0);
-        golden_car::segments(&measured, 60.0, 130.0, 20.0, go_on).unwrap()
+        golden_car::segments(&measured, 60.0, 130.0, 20.0, stop).unwrap()
     });
     assert_eq!((near.lead_in, far.lead_in), (20.0, 50.0));
     assert_eq!(far.edges, [60.0, 80.0, 100.0, 120.0, 130.0]);
@@ -753,15 +754,15 @@ fn segments_are_one_drive() {
     }
     let anew = iri(&road, 60.0, 80.25).unwrap();
     assert!((anew / far.values[0] - 1.0).abs() > 0.01, "{anew} {}", far.values[0]);
-    let random = golden_car::segments(&road, 60.0, 130.0, 20.0, go_on).unwrap();
+    let random = golden_car::segments(&road, 60.0, 130.0, 20.0, stop).unwrap();
     for (random, far) in random.values.iter().zip(&far.values) {
         assert!((random / far - 1.0).abs() < 1e-2);
     }
-    let interrupted = golden_car::segments(&road, 60.0, 960.0, 20.0, &mut || false);
+    let interrupted = golden_car::segments(&road, 60.0, 960.0, 20.0, StopToken::when(&|| true));
     assert_eq!(interrupted.unwrap_err(), Error::Interrupted);
-    assert_eq!(road.averaged(0.1, &mut || false).unwrap_err(), Error::Interrupted);
+    assert_eq!(road.averaged(0.1, StopToken::when(&|| true)).unwrap_err(), Error::Interrupted);
     for (every, part) in [(0.2, "at least 0.25 m"), (-1.0, "greater than 0"), (f64::NAN, "greater than 0")] {
-        assert!(refusal(golden_car::segments(&road, 0.0, 100.0, every, go_on)).contains(part));
+        assert!(refusal(golden_car::segments(&road, 0.0, 100.0, every, stop)).contains(part));
     }
 }
 
@@ -769,8 +770,8 @@ fn segments_are_one_drive() {
 fn averages_of_any_length_are_those_of_the_surface() {
     for ((name, bare), (_, felt)) in kinds(0.0).into_iter().zip(kinds(PATCH)) {
         for x in grid(0.4137, 29.5, 0.531) {
-            assert_eq!(felt.averaged(0.0, &mut || true).unwrap().at(x), bare.at(x), "{name}");
-            assert_eq!(bare.averaged(PATCH, &mut || true).unwrap().at(x), felt.at(x), "{name}");
+            assert_eq!(felt.averaged(0.0, StopToken::NEVER).unwrap().at(x), bare.at(x), "{name}");
+            assert_eq!(bare.averaged(PATCH, StopToken::NEVER).unwrap().at(x), felt.at(x), "{name}");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::problems::continuous;
 use crate::problems::ensemble::study_of;
+use spanwise::stop_token::StopToken;
 use std::sync::Arc;
 
 use proptest::prelude::*;
@@ -169,13 +170,8 @@ fn nothing_comes_after_a_tail_that_ended_by_itself() {
 struct Thorough<'a>(&'a Analysis);
 
 impl Watch for Thorough<'_> {
-    fn enough(
-        &mut self,
-        history: &mut History,
-        reach: &Reach<f64>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<bool, Error> {
-        Watching::new(self.0, &self.0.free, [1.0, 1.0]).enough(history, reach, go_on)
+    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
+        Watching::new(self.0, &self.0.free, [1.0, 1.0]).enough(history, reach, stop)
     }
 }
 
@@ -190,7 +186,7 @@ fn a_tail_ends_where_all_responses_say_so() {
             let found = crossed(&bridge, &vehicle, &damping, recovery, speed, Tail::Free);
             let settings = Settings { tail: Tail::Free, ..Settings::at_speed(speed) };
             let (passages, mut watch) = ([Passage::of(vehicle)], Thorough(&found.analysis));
-            let expected = cross(&found.analysis.model, &passages, &settings, &mut watch, &mut || true).unwrap();
+            let expected = cross(&found.analysis.model, &passages, &settings, &mut watch, StopToken::NEVER).unwrap();
             let history = &found.outcome.history;
             let what = format!("{name}, {vehicle_name}, {damping:?}, {recovery:?}, {speed} m/s");
             assert_eq!((history.len(), history.settled), (expected.len(), expected.settled), "{what}");
@@ -328,7 +324,8 @@ fn study(recovery: Recovery, drive: Drive, quantities: &[Quantity]) -> Study {
     let bridge = two_spans(4);
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 4).unwrap();
     let damping = Damping::Ratios(vec![0.03]);
-    let analysis = Preparation::default().damping(damping).recovery(recovery).of(&bridge, modes, &mut || true).unwrap();
+    let analysis =
+        Preparation::default().damping(damping).recovery(recovery).of(&bridge, modes, StopToken::NEVER).unwrap();
     let settings = Settings { approach: 7.0, tail: Tail::Free, drive, ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(kishan_vehicle())], vec![Passage::of(vehicles().remove(2).1)]];
     study_of(Arc::new(analysis), kinds, settings, Some((roads(256e-6), SEED)), None, quantities).unwrap()

@@ -1,5 +1,6 @@
 //! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
 
+use crate::stop_token::StopToken;
 use serde::{Deserialize, Serialize};
 
 use crate::bridge::Bridge;
@@ -87,8 +88,8 @@ impl Preparation {
         self
     }
 
-    /// A described bridge in its `modes`; `go_on` is asked now and then.
-    pub fn of(&self, bridge: &Bridge, modes: Modes, go_on: &mut dyn FnMut() -> bool) -> Result<Analysis, Error> {
+    /// A described bridge in its `modes`; `stop` is asked now and then.
+    pub fn of(&self, bridge: &Bridge, modes: Modes, stop: StopToken<'_>) -> Result<Analysis, Error> {
         let Preparation { damping, sections, recovery } = self;
         let _mode = Standard::set();
         let sections = match sections {
@@ -112,7 +113,7 @@ impl Preparation {
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
-        let responses = Responses::new(&flexibility, bridge, &sections, go_on)?;
+        let responses = Responses::new(&flexibility, bridge, &sections, stop)?;
         let mesh = flexibility.mesh();
         let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
         let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
@@ -145,26 +146,16 @@ impl Preparation {
 
 impl Analysis {
     /// One crossing by one vehicle.
-    pub fn cross(
-        &self,
-        vehicle: &Vehicle,
-        settings: &Settings,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Outcome, Error> {
-        self.cross_all(&[Passage::of(vehicle.clone())], settings, go_on)
+    pub fn cross(&self, vehicle: &Vehicle, settings: &Settings, stop: StopToken<'_>) -> Result<Outcome, Error> {
+        self.cross_all(&[Passage::of(vehicle.clone())], settings, stop)
     }
 
     /// One crossing by several vehicles.
-    pub fn cross_all(
-        &self,
-        passages: &[Passage],
-        settings: &Settings,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Outcome, Error> {
+    pub fn cross_all(&self, passages: &[Passage], settings: &Settings, stop: StopToken<'_>) -> Result<Outcome, Error> {
         let _mode = Standard::set();
         let mut watching = Watching::new(self, &self.free, [1.0, 1.0]);
-        let mut history = cross(&self.model, passages, settings, &mut watching, go_on)?;
-        let (packed, envelope) = watching.conclude(&mut history, go_on)?;
+        let mut history = cross(&self.model, passages, settings, &mut watching, stop)?;
+        let (packed, envelope) = watching.conclude(&mut history, stop)?;
         let bounds = history.reach.as_ref().map(|reach| self.free.bounds(reach));
         Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope, bounds })
     }
@@ -179,7 +170,7 @@ impl Analysis {
         &self,
         outcome: &Outcome,
         quantity: Quantity,
-        go_on: &mut dyn FnMut() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<[Vec<f64>; 2], Error> {
         if self.missing.contains(&quantity) {
             let allowed = "this bridge was given without influence lines of it";
@@ -191,7 +182,7 @@ impl Analysis {
         let mend = "use fewer sections or a longer step";
         memory::check("sections", size, bytes, MAX_HISTORY_BYTES, "histories there", mend)?;
         let _mode = Standard::set();
-        self.rows.histories(&outcome.packed, range, go_on)
+        self.rows.histories(&outcome.packed, range, stop)
     }
 
     /// Extremes of one quantity; shears on both sides of a section count together.
@@ -255,21 +246,17 @@ impl<'a> Watching<'a> {
     }
 
     /// Takes in what has been recorded since.
-    fn take_in(&mut self, history: &mut History, go_on: &mut dyn FnMut() -> bool) -> Result<&Survey<'a>, Error> {
+    fn take_in(&mut self, history: &mut History, stop: StopToken<'_>) -> Result<&Survey<'a>, Error> {
         self.make_ready(history);
         let Analysis { rows, responses, .. } = self.analysis;
         let survey = self.survey.get_or_insert_with(|| Survey::new(history, rows, responses));
-        survey.go_on(history, &self.packed, go_on)?;
+        survey.go_on(history, &self.packed, stop)?;
         Ok(survey)
     }
 
     /// What it has come to, the crossing being over.
-    pub fn conclude(
-        mut self,
-        history: &mut History,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(Packed, Envelope), Error> {
-        self.take_in(history, go_on)?;
+    pub fn conclude(mut self, history: &mut History, stop: StopToken<'_>) -> Result<(Packed, Envelope), Error> {
+        self.take_in(history, stop)?;
         let Watching { analysis, packed, survey, .. } = self;
         let survey = survey.unwrap_or_else(|| Survey::new(history, &analysis.rows, &analysis.responses));
         let envelope = survey.conclude(history, &packed);
@@ -278,12 +265,7 @@ impl<'a> Watching<'a> {
 }
 
 impl Watch for Watching<'_> {
-    fn enough(
-        &mut self,
-        history: &mut History,
-        reach: &Reach<f64>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<bool, Error> {
+    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
         let (free, [coordinates, rates]) = (self.free, self.factors);
         let reach = reach.clone().scaled(coordinates, rates);
         let load: f64 = history.static_loads.iter().sum();
@@ -301,7 +283,7 @@ impl Watch for Watching<'_> {
                 return Ok(false);
             }
         }
-        let survey = self.take_in(history, go_on)?;
+        let survey = self.take_in(history, stop)?;
         let reached = |row: usize| survey.reached(free.responses[row]);
         let mut rows = 0..free.responses.len();
         let growing = rows.find(|&row| free.unsettled(row, &reach, load, reached(row))).map(|row| (row, reached(row)));

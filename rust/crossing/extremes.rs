@@ -1,5 +1,6 @@
 //! The walk through a history for its extremes: every instant, and the instants at which an axle passes a section.
 
+use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use crate::crossing::envelope::{Envelope, Extreme, Extremes};
@@ -65,16 +66,14 @@ impl<'a> Survey<'a> {
     }
 
     /// Goes on to the last instant that there is, `packed` being those of the history.
-    pub fn go_on(&mut self, history: &History, packed: &Packed, go_on: &mut dyn FnMut() -> bool) -> Result<(), Error> {
+    pub fn go_on(&mut self, history: &History, packed: &Packed, stop: StopToken<'_>) -> Result<(), Error> {
         // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
         let arch = pulp::Arch::new();
         while self.seen < history.len() {
             let instants = self.seen..(self.seen + POLL_EVERY).min(history.len());
             self.seen = instants.end;
             arch.dispatch(GoThrough { survey: self, history, packed, instants });
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
+            stop.check()?;
         }
         Ok(())
     }

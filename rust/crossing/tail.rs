@@ -8,6 +8,7 @@ use crate::recovery::Rows;
 use crate::statics::influence::{Quantity, Responses};
 use crate::step::bridge_step::ModalDamping;
 use crate::step::vibration::Reach;
+use crate::stop_token::StopToken;
 
 /// Part of an extreme by which the tail may still have exceeded it.
 const TOLERANCE: f64 = 1e-3;
@@ -149,10 +150,5 @@ impl FreeRows {
 /// Looks at a crossing on its way.
 pub trait Watch {
     /// Whether nothing that follows what has been recorded can matter, given what free vibration can reach.
-    fn enough(
-        &mut self,
-        history: &mut History,
-        reach: &Reach<f64>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<bool, Error>;
+    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error>;
 }

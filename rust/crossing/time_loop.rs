@@ -17,6 +17,7 @@ use crate::step::stepper::{Scheme, State, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vehicle_step::Rig;
 use crate::step::vibration::{LOOK_EVERY, Vibration};
+use crate::stop_token::StopToken;
 
 /// Most steps between two questions whether to go on.
 const POLL_EVERY: usize = 1024;
@@ -166,7 +167,7 @@ impl<'a> March<'a> {
         mut self,
         geometry: &mut G,
         watch: &mut dyn Watch,
-        go_on: &mut dyn FnMut() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<History, Error> {
         let front = |geometry: &G| geometry.motion(0).x;
         let unsettled = |what: Unsettled, step: usize, time: f64, position: f64| {
@@ -209,7 +210,7 @@ impl<'a> March<'a> {
             if let Some(end) = self.ended.iter().try_fold(0.0, |end: f64, ended| ended.map(|t| end.max(t))) {
                 let exit = *exit.get_or_insert(n);
                 self.history.ended = end;
-                if self.is_over((n, exit), end, &state.modes, watch, go_on)? {
+                if self.is_over((n, exit), end, &state.modes, watch, stop)? {
                     self.history.last_on = if self.loaded { n } else { exit };
                     return Ok(self.history);
                 }
@@ -217,8 +218,8 @@ impl<'a> March<'a> {
             if n > self.most_steps {
                 return Err(Error::Stopped { time, position: front(geometry) });
             }
-            if n % every == 0 && !go_on() {
-                return Err(Error::Interrupted);
+            if n % every == 0 {
+                stop.check()?;
             }
         }
         unreachable!("the loop over steps has no end")
@@ -232,7 +233,7 @@ impl<'a> March<'a> {
         end: f64,
         modes: &[Coordinate<f64>],
         watch: &mut dyn Watch,
-        go_on: &mut dyn FnMut() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<bool, Error> {
         let time = n as f64 * self.h;
         let over = match self.settings.tail {
@@ -253,7 +254,7 @@ impl<'a> March<'a> {
         }
         let reach = self.vibration.reach(modes);
         let free = self.settings.tail == Tail::Free;
-        self.history.settled = free && watch.enough(&mut self.history, &reach, go_on)?;
+        self.history.settled = free && watch.enough(&mut self.history, &reach, stop)?;
         let over = over || self.history.settled;
         self.history.reach = over.then_some(reach);
         Ok(over)

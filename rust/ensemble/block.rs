@@ -1,6 +1,7 @@
 //! One block of samples through one crossing, group beside group of lanes: the step of a single crossing, chunk by chunk,
 //! and after each chunk the extremes of every response in it.
 
+use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use super::bounds::survey;
@@ -278,7 +279,7 @@ struct Stepping<'s, 'g, 'a, L> {
     stretch: &'s mut Stretch<L>,
     place: Where,
     steps: Range<usize>,
-    go_on: &'s dyn Fn() -> bool,
+    stop: StopToken<'s>,
 }
 
 impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
@@ -286,7 +287,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, way, stretch, place, steps, go_on } = self;
+        let Stepping { traveller, steppers, way, stretch, place, steps, stop } = self;
         let (rates, widths) = (way.rows.by_rates(), stretch.widths);
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps.clone() {
@@ -309,7 +310,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
         if !traveller.sound(steps.end - 1) {
             return Err(Trouble::Failed(steps.end - 1, None));
         }
-        if go_on() { Ok(()) } else { Err(Trouble::Interrupted) }
+        stop.check().map_err(|_| Trouble::Interrupted)
     }
 }
 
@@ -466,7 +467,7 @@ pub fn march<L: Lanes>(
     group: &mut Group<'_, L>,
     steppers: &mut Steppers<L>,
     scratch: &mut Scratch<L>,
-    go_on: &dyn Fn() -> bool,
+    stop: StopToken<'_>,
 ) -> Result<Seen<L>, Trouble> {
     let Way { table, rows, look, .. } = *way;
     let steps = table.path.steps;
@@ -483,7 +484,7 @@ pub fn march<L: Lanes>(
     stretch.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
     traveller.keep(stretch.row_mut(0)[0], &widths, rows.by_rates(), table.first == 0);
-    let (mut stop, mut from) = (0, 0);
+    let (mut next, mut from) = (0, 0);
     while from <= traveller.group.ends.latest {
         let (place, end, most) = if from < table.first {
             (Where::Approach, table.first, 1)
@@ -506,15 +507,13 @@ pub fn march<L: Lanes>(
         let alone = with_vehicle.end.max(from);
         if !with_vehicle.is_empty() {
             let stepping =
-                Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: with_vehicle, go_on };
+                Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: with_vehicle, stop };
             L::dispatch(stepping)?;
         }
         if place == Where::Tail {
             let (reach, rates) = (&mut seen.reach, rows.by_rates());
             L::dispatch(Swinging { traveller: &mut traveller, reach, rates, stretch, steps: from..to, alone });
-            if !go_on() {
-                return Err(Trouble::Interrupted);
-            }
+            stop.check().map_err(|_| Trouble::Interrupted)?;
         }
         let looking = Looking {
             seen: &mut seen,
@@ -523,7 +522,7 @@ pub fn march<L: Lanes>(
             ends: &traveller.group.ends,
             place,
             steps: from..to,
-            stop: &mut stop,
+            stop: &mut next,
             stretch,
             between,
             moment,

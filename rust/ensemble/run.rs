@@ -19,6 +19,7 @@ use crate::error::Error;
 use crate::float_mode::Standard;
 use crate::lane::dispatch::{InLanes, with};
 use crate::memory;
+use crate::stop_token::StopToken;
 use crate::threads;
 
 impl Study {
@@ -54,7 +55,7 @@ impl Study {
         let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
         drop((own, number));
         let room = Room::of(self, samples, &marches, workers, count as f64 * layout.bytes())?;
-        let go_on = || !progress.stop.load(Ordering::Relaxed);
+        let stopped = || progress.stop.load(Ordering::Relaxed);
         let order: Vec<u32> =
             distinct.values().flatten().copied().chain(lost.iter().map(|failure| failure.sample as u32)).collect();
         let mut results = Results {
@@ -82,16 +83,14 @@ impl Study {
         let company = RwLock::new(());
         let work = |portion: Portion<'_>| {
             let Portion { march, members, mut records, digests } = portion;
-            let mut failed = Vec::new();
+            let (stop, mut failed) = (StopToken::when(&stopped), Vec::new());
             if let Some(shelf) = shelves.get(march) {
-                if !go_on() {
-                    return Err(Error::Interrupted);
-                }
+                stop.check()?;
                 let shared = shelf.take(self, &layout);
                 let Shared { table, couplings } = &*shared;
                 let task = Task { study: self, layout, samples, kind: marches[march].0, table, couplings };
-                let (records, failed, go_on) = (&mut records[..], &mut failed, &go_on);
-                let part = Part { task, members, records, failed, go_on };
+                let (records, failed) = (&mut records[..], &mut failed);
+                let part = Part { task, members, records, failed, stop };
                 if table.laid_out {
                     with(workers.isa, part)?
                 } else {
@@ -101,7 +100,7 @@ impl Study {
             } else {
                 for (&member, record) in members.iter().zip(&mut records) {
                     let sample = member as usize;
-                    let mut cross = || single::cross(self, &layout, samples, sample, record, &mut || go_on());
+                    let mut cross = || single::cross(self, &layout, samples, sample, record, stop);
                     let beside = {
                         let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
                         cross()
@@ -132,7 +131,7 @@ impl Study {
                 failures.lock().unwrap_or_else(|e| e.into_inner()).extend(failed);
             }
             progress.done.fetch_add(members.len(), Ordering::Relaxed);
-            if go_on() { Ok(()) } else { Err(Error::Interrupted) }
+            stop.check()
         };
         // In order, so that few marches are under way at a time. One thread is this one.
         match working {

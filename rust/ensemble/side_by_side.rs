@@ -1,5 +1,6 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
+use crate::stop_token::StopToken;
 use std::sync::OnceLock;
 
 use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
@@ -77,15 +78,15 @@ pub struct Part<'s, 'a> {
     /// Where those that fail are.
     pub failed: &'s mut Vec<Failure>,
     /// Whether to go on.
-    pub go_on: &'s dyn Fn() -> bool,
+    pub stop: StopToken<'s>,
 }
 
 impl InLanes for Part<'_, '_> {
     type Output = Result<(), Error>;
 
     fn run<L: Lanes>(self) -> Self::Output {
-        let Part { task, members, records, failed, go_on } = self;
-        task.run::<L>(members, records, failed, go_on)
+        let Part { task, members, records, failed, stop } = self;
+        task.run::<L>(members, records, failed, stop)
     }
 }
 
@@ -174,7 +175,7 @@ impl Task<'_> {
         members: &[u32],
         records: &mut [Record<'_>],
         failed: &mut Vec<Failure>,
-        go_on: &dyn Fn() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<(), Error> {
         let (mut scratch, mut roads) = (Scratch::new(), Vec::new());
         let alike = self.samples.alike();
@@ -205,7 +206,7 @@ impl Task<'_> {
                 // alone, to see when. Others come to the same as side by side.
                 let own_scratch = (&mut scratch, &mut roads);
                 let mut again: Vec<usize> = (0..places.len()).collect();
-                match self.group(members, places, ready, false, &mut steppers, own_scratch, go_on) {
+                match self.group(members, places, ready, false, &mut steppers, own_scratch, stop) {
                     Ok(group) => again.retain(|&lane| {
                         let place = places[lane];
                         !self.write(&group, lane, ready, members[place], &mut records[place])
@@ -218,14 +219,14 @@ impl Task<'_> {
                     let sample = members[place] as usize;
                     let own = if alike { ready } else { &ready[lane..=lane] };
                     let own_scratch = (&mut scratch, &mut roads);
-                    let (step, unsettled) =
-                        match self.group(members, &[place], own, true, &mut None, own_scratch, go_on) {
-                            Ok(group) if self.write(&group, 0, own, members[place], &mut records[place]) => continue,
-                            // No step shows it, but sums of squares do.
-                            Ok(group) => (group.last.get(0) as usize, None),
-                            Err(Trouble::Interrupted) => return Err(Error::Interrupted),
-                            Err(Trouble::Failed(step, unsettled)) => (step, unsettled),
-                        };
+                    let (step, unsettled) = match self.group(members, &[place], own, true, &mut None, own_scratch, stop)
+                    {
+                        Ok(group) if self.write(&group, 0, own, members[place], &mut records[place]) => continue,
+                        // No step shows it, but sums of squares do.
+                        Ok(group) => (group.last.get(0) as usize, None),
+                        Err(Trouble::Interrupted) => return Err(Error::Interrupted),
+                        Err(Trouble::Failed(step, unsettled)) => (step, unsettled),
+                    };
                     records[place].forget();
                     failed.push(Failure { sample, step: Some(step), cause: self.cause(sample, step, unsettled) });
                 }
@@ -267,7 +268,7 @@ impl Task<'_> {
         closely: bool,
         steppers: &mut Option<Steppers<L>>,
         (scratch, roads): (&mut Scratch<L>, &mut Vec<L>),
-        go_on: &dyn Fn() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<Marched<L>, Trouble> {
         let Task { study, table, samples, .. } = *self;
         let kind: &Kind = &study.kinds[self.kind];
@@ -308,7 +309,7 @@ impl Task<'_> {
         });
         let geometry = Shared::new(table, roads, speed, couplings);
         let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
-        let seen = march(&way, &mut group, steppers, scratch, go_on)?;
+        let seen = march(&way, &mut group, steppers, scratch, stop)?;
         let at_rest = self.layout.own_statics.then(|| {
             let of = |k: usize| L::from_fn(|lane| ready_of(lane).static_loads[k]);
             let loads: Vec<L> = (0..table.axles()).map(of).collect();

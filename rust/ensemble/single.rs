@@ -1,5 +1,6 @@
 //! Samples whose motion is their own: each a single crossing, through the same step.
 
+use crate::stop_token::StopToken;
 use std::sync::Arc;
 
 use super::results::{Column, Layout, Record};
@@ -82,7 +83,7 @@ pub fn cross(
     samples: &Samples,
     sample: usize,
     record: &mut Record<'_>,
-    go_on: &mut dyn FnMut() -> bool,
+    stop: StopToken<'_>,
 ) -> Result<(), Error> {
     let passages = passages(study, samples, sample)?;
     let road = match &study.own {
@@ -105,8 +106,8 @@ pub fn cross(
     };
     let factors = scaled.as_ref().map_or([1.0; 2], |scaled| [scaled.stiffness, scaled.rates]);
     let mut watching = Watching::new(&study.analysis, &study.free, factors);
-    let mut history = crossing::cross(model, &passages, &settings, &mut watching, go_on)?;
-    let (_, envelope) = watching.conclude(&mut history, go_on)?;
+    let mut history = crossing::cross(model, &passages, &settings, &mut watching, stop)?;
+    let (_, envelope) = watching.conclude(&mut history, stop)?;
     let loads = axle_loads(&history).dynamic;
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
     let chosen: Vec<(usize, f64)> = (study.look.chosen.iter().zip(&study.look.deflections))

@@ -1,5 +1,6 @@
 //! The bridge for Python, with what was last worked out for it.
 
+use crate::stop_token::StopToken;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use faer::Mat;
@@ -98,7 +99,7 @@ impl Solved {
         }
     }
 
-    pub fn analysis(&self, asked: Asked, go_on: &mut dyn FnMut() -> bool) -> Result<Arc<Analysis>, Error> {
+    pub fn analysis(&self, asked: Asked, stop: StopToken<'_>) -> Result<Arc<Analysis>, Error> {
         if let Some((for_what, analysis)) = held(&self.analysis).as_ref()
             && *for_what == asked
         {
@@ -108,7 +109,7 @@ impl Solved {
         let analysis = Arc::new(match &self.source {
             Source::Described(bridge) => {
                 let modes = self.modes(bridge, asked.modes)?;
-                asked.preparation.of(bridge, modes, go_on)?
+                asked.preparation.of(bridge, modes, stop)?
             }
             Source::Given(given) => asked.preparation.of_given(given, asked.modes)?,
         });

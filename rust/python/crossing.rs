@@ -86,8 +86,8 @@ impl Crossing {
         let vehicles = vehicles.iter().map(|vehicle| vehicle.0.clone()).collect();
         let read = postcard::from_bytes::<analysis::Outcome>(state);
         let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
-        let (analysis, outcome) = interruptible(py, |go_on| {
-            let analysis = bridge.0.analysis(asked, go_on)?;
+        let (analysis, outcome) = interruptible(py, |stop| {
+            let analysis = bridge.0.analysis(asked, stop)?;
             let outcome = analysis.received(outcome);
             Ok((analysis, outcome))
         })?;
@@ -104,7 +104,7 @@ impl Crossing {
     fn histories<'py>(&self, py: Python<'py>, name: &str) -> PyResult<[Matrix<'py>; 2]> {
         let quantity = quantity(name)?;
         let width = self.analysis.responses.range(quantity).len();
-        let [dynamic, at_rest] = interruptible(py, |go_on| self.analysis.histories(&self.outcome, quantity, go_on))?;
+        let [dynamic, at_rest] = interruptible(py, |stop| self.analysis.histories(&self.outcome, quantity, stop))?;
         Ok([rows(py, dynamic, width)?, rows(py, at_rest, width)?])
     }
 
@@ -230,7 +230,7 @@ impl Crossing {
         let mut lines: Vec<Option<&DVector<f64>>> = assembly.bodies.iter().flatten().map(Some).collect();
         lines.extend(assembly.hops.iter().map(Option::as_ref));
         let width = 3 * (lines.len() + 1);
-        let values = interruptible(py, |go_on| {
+        let values = interruptible(py, |stop| {
             let mut values = Vec::new();
             memory::reserve(&mut values, "states", "motion", history.len() * width)?;
             for row in history.motion.chunks_exact(history.motion_width()) {
@@ -243,9 +243,7 @@ impl Crossing {
                     }
                 }
                 values.extend(&own[own.len() - 3..]);
-                if !go_on() {
-                    return Err(Error::Interrupted);
-                }
+                stop.check()?;
             }
             Ok(values)
         })?;
@@ -401,9 +399,9 @@ pub fn cross<'py>(
     let assemblies = passages.iter().map(|passage| passage.vehicle.assembly());
     let of_vehicles: usize = assemblies.map(|assembly| assembly.coordinates.len() + assembly.contacts.len()).sum();
     let order = solved.order().max(asked.preparation.sections.as_ref().map_or(0, Vec::len)).max(of_vehicles);
-    let (analysis, outcome, passages) = preparing(py, order, move |go_on| {
-        let analysis = solved.analysis(asked, go_on)?;
-        let outcome = analysis.cross_all(&passages, &settings, go_on)?;
+    let (analysis, outcome, passages) = preparing(py, order, move |stop| {
+        let analysis = solved.analysis(asked, stop)?;
+        let outcome = analysis.cross_all(&passages, &settings, stop)?;
         Ok((analysis, outcome, passages))
     })?;
     let vehicles = passages.into_iter().map(|passage| passage.vehicle).collect();

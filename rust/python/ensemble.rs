@@ -28,6 +28,7 @@ use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
 use crate::statics::influence::Quantity;
+use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 
 /// Random roads of the samples' own: roughness, waviness, band, contact patch, period, seed.
@@ -210,14 +211,12 @@ impl Clock {
         }
         let bytes = 2.0 * (size_of::<f64>() * instants.len()) as f64;
         memory::check("samples", count, bytes, f64::INFINITY, "times and positions", "use fewer")?;
-        let [times, positions] = interruptible(py, |go_on| {
+        let [times, positions] = interruptible(py, |stop| {
             let mut times = Array2::zeros(instants.dim());
             let mut positions = Array2::zeros(instants.dim());
             let mut hands = self.0.of(0);
             for (row, instants) in instants.rows().into_iter().enumerate() {
-                if !go_on() {
-                    return Err(Error::Interrupted);
-                }
+                stop.check()?;
                 let speed = speeds[if speeds.len() == 1 { 0 } else { row }];
                 if hands.march != marches[row] {
                     hands = self.0.of(marches[row]);
@@ -296,13 +295,13 @@ pub fn static_loads<'py>(
     let bytes = (size_of::<f64>() * count) as f64 * axles as f64;
     memory::check("samples", count, bytes, f64::INFINITY, "static axle loads", "use fewer")?;
     let order = kinds.iter().map(|event| coordinates(event)).max().unwrap_or(0);
-    let all = preparing(py, order, move |go_on| {
+    let all = preparing(py, order, move |stop| {
         let loads = |vehicles: &[Vehicle]| {
             let mut all: Vec<f64> = vehicles.iter().flat_map(|vehicle| vehicle.static_loads(gravity)).collect();
             all.resize(axles, f64::NAN);
             all
         };
-        let mut ask = || if go_on() { Ok(()) } else { Err(Error::Interrupted) };
+        let ask = || stop.check();
         let nominal = as_given.iter().map(|event| ask().map(|()| loads(event))).collect::<Result<Vec<_>, Error>>()?;
         let mut all = Vec::new();
         memory::reserve(&mut all, "samples", count, count * axles)?;
@@ -399,12 +398,12 @@ pub fn ensemble<'py>(
     let started = Instant::now();
     let solved = Arc::clone(&bridge.0);
     let (analysis, shares, quantities, run) = attended(py, count, progress.as_ref(), move |told| {
-        let mut go_on = || !told.stop.load(Ordering::Relaxed);
+        let stopped = || told.stop.load(Ordering::Relaxed);
         let own = own_road.map(|(roughness, waviness, band, patch, period, seed)| {
             let spectrum = Spectrum::new(roughness, waviness, band)?;
             Ok::<_, Error>((Arc::new(Synthesis::new(spectrum, Patch::new(patch)?, Some(period))?), seed))
         });
-        let analysis = solved.analysis(asked, &mut go_on)?;
+        let analysis = solved.analysis(asked, StopToken::when(&stopped))?;
         let own = own.transpose()?;
         let study = Plan { analysis, kinds, settings, own, advance, quantities: quantities.clone() }.study()?;
         let run = study.run(&samples, &workers, told)?;

@@ -1,5 +1,6 @@
 //! Roads for Python.
 
+use crate::stop_token::StopToken;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -46,9 +47,10 @@ impl PyRoad {
     ) -> PyResult<Self> {
         let spectrum = Spectrum::new(roughness, waviness, band)?;
         let patch = Patch::new(contact_patch)?;
-        let random = interruptible(py, |go_on| {
+        let random = interruptible(py, |stop| {
             let synthesis = Synthesis::new(spectrum, patch, period)?;
-            if go_on() { Ok(synthesis.road(seed, sample)) } else { Err(Error::Interrupted) }
+            stop.check()?;
+            Ok(synthesis.road(seed, sample))
         })?;
         Ok(PyRoad(random.into()))
     }
@@ -117,8 +119,8 @@ impl PyRoad {
         let x = x.as_array().to_vec();
         let (count, bytes) = (x.len(), ((size_of::<road::point::Point>() + 3 * size_of::<f64>()) * x.len()) as f64);
         memory::check("x", format!("{count} points"), bytes, f64::INFINITY, "the surface there", "use fewer")?;
-        let points = interruptible(py, |go_on| {
-            let point = |&x: &f64| if go_on() { Ok(self.0.at(x)) } else { Err(Error::Interrupted) };
+        let points = interruptible(py, |stop| {
+            let point = |&x: &f64| stop.check().map(|()| self.0.at(x));
             x.iter().map(point).collect::<Result<Vec<road::point::Point>, Error>>()
         })?;
         let column = |of: fn(&road::point::Point) -> f64| points.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
@@ -128,7 +130,7 @@ impl PyRoad {
     /// The same averaged over another length than its contact patches.
     fn averaged(&self, py: Python<'_>, length: f64) -> PyResult<Self> {
         let road = self.0.clone();
-        Ok(PyRoad(aside(py, road.points() > FEW, move |go_on| road.averaged(length, go_on))?))
+        Ok(PyRoad(aside(py, road.points() > FEW, move |stop| road.averaged(length, stop))?))
     }
 
     /// Wave numbers up to which all parts are known, and those of the finest.
@@ -138,7 +140,7 @@ impl PyRoad {
 
     fn iri(&self, py: Python<'_>, start: f64, end: f64) -> PyResult<f64> {
         let road = self.0.clone();
-        aside(py, road.points() > FEW, move |go_on| golden_car::iri(&road, start, end, go_on))
+        aside(py, road.points() > FEW, move |stop| golden_car::iri(&road, start, end, stop))
     }
 
     /// The index by segments: their ends, the values, and the road before the first.
@@ -150,7 +152,7 @@ impl PyRoad {
         every: f64,
     ) -> PyResult<(Vector<'py>, Vector<'py>, f64)> {
         let road = self.0.clone();
-        let drive = move |go_on: &mut dyn FnMut() -> bool| golden_car::segments(&road, start, end, every, go_on);
+        let drive = move |stop: StopToken<'_>| golden_car::segments(&road, start, end, every, stop);
         let found = aside(py, self.0.points() > FEW, drive)?;
         Ok((found.edges.into_pyarray(py), found.values.into_pyarray(py), found.lead_in))
     }

@@ -6,6 +6,7 @@
 //! exact integral, and each step takes the mean slope of the average over it, so that no point is passed over wherever
 //! the steps lie; every step is exact for an input slope that is constant over it.
 
+use crate::stop_token::StopToken;
 use nalgebra::{SMatrix, SVector};
 
 use super::patch::Patch;
@@ -51,9 +52,9 @@ pub struct Segments {
 }
 
 /// The index from `start` to `end` [m/m]; 1e-3 of it is 1 m/km.
-pub fn iri(road: &Road, start: f64, end: f64, go_on: &mut dyn FnMut() -> bool) -> Result<f64, Error> {
+pub fn iri(road: &Road, start: f64, end: f64, stop: StopToken<'_>) -> Result<f64, Error> {
     let (mut sum, mut count) = (0.0, 0.0);
-    drive(road, start, end, go_on, |_, slope| {
+    drive(road, start, end, stop, |_, slope| {
         sum += slope.abs();
         count += 1.0;
     })?;
@@ -64,13 +65,7 @@ pub fn iri(road: &Road, start: f64, end: f64, go_on: &mut dyn FnMut() -> bool) -
 ///
 /// It starts up to 50 m before, as far as the road is known, or at the start where less than 11 m are. A rest is a
 /// segment of its own, unless the average leaves nothing of it.
-pub fn segments(
-    road: &Road,
-    start: f64,
-    end: f64,
-    every: f64,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Segments, Error> {
+pub fn segments(road: &Road, start: f64, end: f64, every: f64, stop: StopToken<'_>) -> Result<Segments, Error> {
     positive("every", every)?;
     check(road, start, end)?;
     if every < BASE {
@@ -85,7 +80,7 @@ pub fn segments(
     let lead_in = if known >= START { known } else { 0.0 };
     let count = count as usize;
     let (mut sums, mut counts) = (vec![0.0; count], vec![0.0; count]);
-    drive(road, start - lead_in, end, go_on, |x, slope| {
+    drive(road, start - lead_in, end, stop, |x, slope| {
         let segment = ((x - start) / every) as usize;
         if x >= start && segment < count {
             sums[segment] += slope.abs();
@@ -103,11 +98,11 @@ pub fn drive(
     road: &Road,
     start: f64,
     end: f64,
-    go_on: &mut dyn FnMut() -> bool,
+    stop: StopToken<'_>,
     mut take: impl FnMut(f64, f64),
 ) -> Result<(), Error> {
     check(road, start, end)?;
-    let (felt, base) = felt(road, start, end, go_on)?;
+    let (felt, base) = felt(road, start, end, stop)?;
     let elevation = |x: f64| felt.at(x).elevation;
     let (transition, input) = step_matrices();
     let first = start + 0.5 * base;
@@ -116,8 +111,8 @@ pub fn drive(
     let mut state = SVector::<f64, 4>::new(initial, 0.0, initial, 0.0);
     let steps = ((end - start - base) / STEP * (1.0 + 1e-12)).floor() as usize;
     for k in 1..=steps {
-        if k % LOOK == 0 && !go_on() {
-            return Err(Error::Interrupted);
+        if k % LOOK == 0 {
+            stop.check()?;
         }
         let x = first + k as f64 * STEP;
         let here = elevation(x);
@@ -143,12 +138,12 @@ fn check(road: &Road, start: f64, end: f64) -> Result<(), Error> {
 }
 
 /// The road as the tyre of the golden car feels it, and the length over which anything of it is averaged [m].
-fn felt(road: &Road, start: f64, end: f64, go_on: &mut dyn FnMut() -> bool) -> Result<(Road, f64), Error> {
+fn felt(road: &Road, start: f64, end: f64, stop: StopToken<'_>) -> Result<(Road, f64), Error> {
     let (base, none) = (Patch::new(BASE)?, Patch::new(0.0)?);
     let is_coarse = |profile: &Profile| profile.spacing(start, end) > COARSE;
     let is_all_coarse = road.parts.iter().all(|part| matches!(part, Part::Profile(profile) if is_coarse(profile)));
     let chords = |profile: &Profile| profile.chords(if is_coarse(profile) { none } else { base });
-    Ok((road.remade(chords, base, go_on)?, if is_all_coarse { 0.0 } else { BASE }))
+    Ok((road.remade(chords, base, stop)?, if is_all_coarse { 0.0 } else { BASE }))
 }
 
 /// Transition over a step, and the effect of a unit slope during it: blocks of the exponential of both together.

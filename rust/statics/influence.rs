@@ -7,6 +7,7 @@ use crate::bridge::Bridge;
 use crate::bridge::cubics::Line;
 use crate::error::Error;
 use crate::statics::flexibility::{Action, Actions, Flexibility, Restraint, Structure, TOGETHER};
+use crate::stop_token::StopToken;
 
 /// A kind of response. Signs: deflection down, sagging moment, shear as the sum of upward forces to the left, reactions
 /// up and clamp moments sagging, all positive.
@@ -133,12 +134,12 @@ pub struct Responses {
 }
 
 impl Responses {
-    /// At `sections` [m], which must be nodes of the flexibility's mesh; `go_on` is asked now and then whether to.
+    /// At `sections` [m], which must be nodes of the flexibility's mesh; `stop` is asked now and then whether to.
     pub fn new(
         flexibility: &Flexibility,
         bridge: &Bridge,
         sections: &[f64],
-        go_on: &mut dyn FnMut() -> bool,
+        stop: StopToken<'_>,
     ) -> Result<Self, Error> {
         let mesh = flexibility.mesh();
         let sections: Vec<usize> = sections.iter().map(|&x| mesh.node_at(x)).collect();
@@ -157,9 +158,7 @@ impl Responses {
         let mut lines = Vec::with_capacity(all.len());
         for some in all.chunks(TOGETHER) {
             lines.extend(flexibility.each_deflected(some, actual));
-            if !go_on() {
-                return Err(Error::Interrupted);
-            }
+            stop.check()?;
         }
         Ok(Responses { sections, reactions: vertical.len(), held, lines })
     }

@@ -1,6 +1,7 @@
 //! The headline case of the ensemble engine, studies with all that it allows, and the few calls by which tests and
 //! benches reach that engine.
 
+use spanwise::stop_token::StopToken;
 use std::sync::{Arc, OnceLock};
 
 use spanwise::bridge::Bridge;
@@ -70,7 +71,9 @@ pub fn kishan_analysis(sections: usize, recovery: Recovery) -> Arc<Analysis> {
     let modes = Modes::new(&bridge, &Flexibility::new(&bridge, &[]).unwrap(), 3).unwrap();
     let at = |i: usize| bridge.length() * i as f64 / (sections - 1) as f64;
     let sections: Vec<f64> = (0..sections).map(at).collect();
-    Arc::new(Preparation::default().sections(&sections).recovery(recovery).of(&bridge, modes, &mut || true).unwrap())
+    Arc::new(
+        Preparation::default().sections(&sections).recovery(recovery).of(&bridge, modes, StopToken::NEVER).unwrap(),
+    )
 }
 
 /// Any bridge in some modes, seen at some sections, the default ones if none are given.
@@ -84,7 +87,7 @@ pub fn analysis_of(
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[]).unwrap(), modes).unwrap();
     let sections = (!sections.is_empty()).then(|| sections.to_vec());
     let preparation = Preparation { damping: damping.clone(), sections, recovery };
-    Arc::new(preparation.of(bridge, modes, &mut || true).unwrap())
+    Arc::new(preparation.of(bridge, modes, StopToken::NEVER).unwrap())
 }
 
 /// A rough approach of 30 m.
@@ -246,8 +249,8 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
     let omega = model.omega.iter().map(|omega| omega * root).collect();
     let own = ModalBridge { omega, damping, ..model.clone() };
     let mut watching = Watching::new(&study.analysis, &study.free, [stiffness, root * factor]);
-    let mut history = cross(&own, &[passage], &settings, &mut watching, &mut || true)?;
-    let (_, envelope) = watching.conclude(&mut history, &mut || true)?;
+    let mut history = cross(&own, &[passage], &settings, &mut watching, StopToken::NEVER)?;
+    let (_, envelope) = watching.conclude(&mut history, StopToken::NEVER)?;
     Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness, rates: root * factor })
 }
 
@@ -345,6 +348,6 @@ pub fn one<L: Lanes>(study: &Study, number: u64, laid_out: bool) -> (Vec<f64>, V
     let record = Record { numbers: &mut numbers, instants: &mut instants };
     let (samples, table, couplings) = (&samples, &table, &OnceLock::new());
     let task = Task { study, layout, samples, kind: 0, table, couplings };
-    task.run::<L>(&[0], &mut [record], &mut Vec::new(), &|| true).unwrap();
+    task.run::<L>(&[0], &mut [record], &mut Vec::new(), StopToken::NEVER).unwrap();
     (numbers, instants)
 }

@@ -14,6 +14,7 @@ use spanwise::road::patch::Patch;
 use spanwise::road::profile::Profile;
 use spanwise::statics::flexibility::Flexibility;
 use spanwise::step::friction::{Law, Stroke};
+use spanwise::stop_token::StopToken;
 use spanwise::vehicle::Vehicle;
 
 use super::Run;
@@ -71,10 +72,10 @@ pub fn run_all(
     let modes = Modes::new(bridge, &Flexibility::new(bridge, &[])?, modes)?;
     let sections = (!sections.is_empty()).then(|| sections.to_vec());
     let preparation = Preparation { damping: damping.clone(), sections, recovery };
-    let analysis = preparation.of(bridge, modes, &mut || true)?;
-    let outcome = analysis.cross_all(passages, settings, &mut || true)?;
+    let analysis = preparation.of(bridge, modes, StopToken::NEVER)?;
+    let outcome = analysis.cross_all(passages, settings, StopToken::NEVER)?;
     let all = 0..analysis.rows.len();
-    let responded = analysis.rows.histories(&outcome.packed, all, &mut || true)?;
+    let responded = analysis.rows.histories(&outcome.packed, all, StopToken::NEVER)?;
     let flexibility = Flexibility::new(bridge, &analysis.sections)?;
     Ok(Run { bridge: bridge.clone(), flexibility, analysis, outcome, responded })
 }
