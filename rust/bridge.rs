@@ -1,4 +1,7 @@
 //! The bridge as an engineer describes it (spans, supports, EI, mass), checked once and valid from then on.
+//!
+//! EI and mass are a [`distribution`] along it, each [`support`] holds it, its mass is lumped at stations
+//! ([`lumping`]), and every function along it is made of [`cubics`].
 
 pub mod cubics;
 pub mod distribution;

@@ -1,4 +1,7 @@
 //! What the step asks about the contacts: where they stand, how they move, and what lies under them.
+//!
+//! In a single crossing motion is [`prescribed`], or [`free`] where a vehicle rolls, on the [`pavement`] of each
+//! vehicle; samples that move alike share a table ([`crate::ensemble::placing`]).
 
 pub mod free;
 pub mod pavement;
@@ -49,7 +52,8 @@ pub trait Geometry<L: Lane> {
     /// The road under the contact.
     fn surface(&self, contact: usize) -> Surface<L>;
 
-    /// The [`Stepper::coupling`](crate::step::stepper::Stepper::coupling) of this place, where it is known: the same in all lanes.
+    /// The [`Stepper::coupling`](crate::step::stepper::Stepper::coupling) of this place, where it is known, the same in
+    /// all lanes.
     fn coupling(&self) -> Option<&[f64]> {
         None
     }

@@ -1,4 +1,5 @@
-//! A bridge that is not described but given: by the flexibility of its basic bridge, or by its modes.
+//! A bridge that is not described but given: by the flexibility of its basic bridge ([`by_flexibility`]), or by its
+//! modes ([`by_modes`]).
 //!
 //! What a crossing needs is lines along the path of the wheels, of the modes and of the responses. A described bridge
 //! integrates them; here they come from another program or from a table, and the rest is the same.
@@ -9,8 +10,7 @@ pub mod sides;
 
 use faer::Mat;
 
-use crate::bridge::cubics::{COINCIDENT, MAX_STATIONS};
-use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::cubics::{COINCIDENT, Line, MAX_STATIONS, Mesh};
 use crate::bridge::support::Support;
 use crate::damping::Damping;
 use crate::error::{Error, finite, positive};

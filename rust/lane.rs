@@ -1,4 +1,7 @@
 //! What the time step computes with: one `f64`, or several samples side by side.
+//!
+//! [`dispatch`] chooses the instruction set and with it how many; what any processor can do is [`wide`]. Vehicles,
+//! bridges and contacts of single samples become those of all lanes by [`gather`].
 
 pub mod bits;
 pub mod dispatch;

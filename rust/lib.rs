@@ -1,19 +1,21 @@
-//! Dynamic response of beam bridges to vehicles: a few modes in time, then quasi-static recovery by force summation, which
-//! makes those few modes enough (H. Kishan and R. W. Traill-Nash, IABSE Publications 33, 1973, cited as KTN73).
+//! Dynamic response of beam bridges to vehicles: a few modes in time, then quasi-static recovery by force summation,
+//! which makes those few modes enough (H. Kishan and R. W. Traill-Nash, IABSE Publications 33, 1973, cited as KTN73).
 //!
-//! The rooms follow the data. A [`bridge`] on its supports has deflected shapes under unit actions and, by reciprocity,
-//! influence lines ([`statics`]); its flexibility gives its [`modes`] and their [`damping`]. What is worked out for a
-//! described bridge can be [`imported`] instead. Either way it becomes a [`modal_bridge`], in whose few coordinates A it
-//! moves:
+//! The modules follow the data. A [`bridge`] on its supports has deflected shapes under unit actions and, by
+//! reciprocity, influence lines ([`statics`]); its flexibility gives its [`modes`] and their [`damping`]. What is
+//! worked out for a described bridge can be [`imported`] instead. Either way it becomes a [`modal_bridge`], in whose
+//! few coordinates A it moves:
 //!
-//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::stepper`]).
+//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::bridge_step`], together with the vehicles in [`step::stepper`]).
 //!
-//! A [`vehicle`] in its own coordinates presses on it through its contacts with P, by a law of tyre, suspension, friction
-//! and lift-off ([`step::contact`]), on a [`road`]. One [`step`] moves them all together, in [`lane`]s: of one crossing or of
-//! several samples side by side. Where the contacts are is a matter of [`geometry`], and so of how the vehicle makes its
-//! [`passage`]. From A and P follow all responses by [`force_summation`], inertia and damping forces from Ã = A − Ā (Eq. 11),
-//! or the same in one row each ([`recovery`]), R = ρ·A + Σ g(x) P. A [`crossing`] is marched through in time, its tail
-//! included, and searched for its extremes; an [`ensemble`] is many of them, each the same to the bit as alone.
+//! A [`vehicle`] in its own coordinates presses on it through its contacts with the axle loads P, by the contact law of
+//! tyre, suspension, friction and lift-off ([`step::contact`]), on a [`road`]. One [`step`] moves them all together, in
+//! [`lane`]s: of one crossing or of several samples side by side. Where the contacts are is a matter of [`geometry`],
+//! and so of how the vehicle makes its [`passage`]. From A and P follow all responses by [`force_summation`], with
+//! inertia and damping forces from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one
+//! row each ([`recovery`]), R = ρ·A + Σ g(x) P. A [`crossing`] goes through time step by step, its tail included, and
+//! is searched for the extremes of every response ([`crossing::extremes`]); an [`ensemble`] is many of them, each the
+//! same to the bit as alone.
 //!
 //! # A crossing, and many
 //!
@@ -23,7 +25,7 @@
 //! use spanwise::bridge::{Layout, lumping::Stations};
 //! use spanwise::crossing::analysis::Preparation;
 //! use spanwise::damping::Damping;
-//! use spanwise::ensemble::{Plan, Progress, Workers, record::Column, sample::Samples};
+//! use spanwise::ensemble::{Plan, Progress, Workers, results::Column, sample::Samples};
 //! use spanwise::modes::Modes;
 //! use spanwise::passage::{Passage, settings::Settings};
 //! use spanwise::road::{patch::Patch, random::Synthesis, spectrum::Spectrum};

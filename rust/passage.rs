@@ -1,4 +1,7 @@
-//! A vehicle among others: how it is driven, where and when it enters, on which road.
+//! How a vehicle crosses, as the user says it: its drive, direction, entry, lane and road.
+//!
+//! What all vehicles of a crossing have in common are its [`settings`]; with them a passage is [`planned`] as a
+//! [`motion`], and the crossing divided into steps ([`step_length`]).
 
 pub mod motion;
 pub mod planned;
@@ -62,7 +65,7 @@ impl Direction {
     }
 }
 
-/// A vehicle among others.
+/// A vehicle and how it crosses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passage {
     /// The vehicle.

@@ -6,7 +6,6 @@ mod ensemble;
 mod road;
 mod vehicle;
 
-use crate::stop_token::StopToken;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -23,6 +22,7 @@ use pyo3::types::PyBytes;
 use crate::ensemble::Progress;
 use crate::error::Error;
 use crate::float_mode::Standard;
+use crate::stop_token::StopToken;
 use crate::threads;
 
 type Vector<'py> = Bound<'py, PyArray1<f64>>;

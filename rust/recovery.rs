@@ -1,10 +1,10 @@
-//! Responses from modal states: force summation in one row per response, and plain superposition as its partner.
+//! Responses from modal states: force summation in one row per response, and plain superposition for comparison.
 //!
 //! KTN73 Eqs. 9–16 are linear in the modal coordinates and the axle loads, so all of them fold into
 //! R = ρ·A + Σ g(x_k) P_k, with ρ_m the response to the static loads MΦΩ² of mode m and
-//! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::force_summation`], for reading and for testing.
+//! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::force_summation`], for reading and for
+//! testing.
 
-use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use faer::Mat;
@@ -18,6 +18,7 @@ use crate::modes::Modes;
 use crate::spline::value;
 use crate::statics::influence::Responses;
 use crate::step::bridge_step::ModalDamping;
+use crate::stop_token::StopToken;
 
 /// How responses follow from the included modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

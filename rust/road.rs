@@ -2,8 +2,9 @@
 //!
 //! x runs from the left end of the bridge, negative on the left approach; elevation is positive up. A road is a sum of
 //! [`random`] roads after ISO 8608 ([`spectrum`]), measured [`profile`]s and single [`feature`]s, each averaged over
-//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness. A vehicle feels it from the [`datum`] of its
-//! way.
+//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness. A vehicle feels it from the [`datum`] of
+//! its way. Random roads are made by [`philox`], [`turn`], [`fft`] and [`b_spline`], with the same bits on every
+//! machine.
 
 pub mod b_spline;
 pub mod datum;
@@ -18,10 +19,10 @@ pub mod random;
 pub mod spectrum;
 pub mod turn;
 
-use crate::stop_token::StopToken;
 use std::sync::Arc;
 
 use crate::error::{Error, finite};
+use crate::stop_token::StopToken;
 use datum::Datum;
 use feature::Feature;
 use patch::Patch;

@@ -1,4 +1,7 @@
 //! The bridge at rest: shapes under unit actions, influence lines, settlement of supports.
+//!
+//! Shapes are integrated and made compatible in [`flexibility`]; by reciprocity they are the lines of [`influence`],
+//! and under a [`settlement`] of the supports the state of the bridge.
 
 pub mod flexibility;
 pub mod influence;

@@ -1,6 +1,7 @@
 //! Plane vehicles: rigid bodies on axles, hinged or sprung to each other; trains of forces or masses.
 //!
 //! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
+//! The parts are in [`body`], the matrices made of them in [`equations`].
 
 pub mod body;
 pub mod dense;
@@ -8,8 +9,7 @@ pub mod equations;
 
 use crate::error::{Error, finite, not_negative, positive};
 use crate::float_mode::Standard;
-use crate::vehicle::body::{Axle, Body, Coupling, Suspension};
-use crate::vehicle::body::{BuildUp, Friction};
+use crate::vehicle::body::{Axle, Body, BuildUp, Coupling, Friction, Suspension};
 use crate::vehicle::equations::{Assembly, ContactLaw, front_first, positions, prefix};
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.

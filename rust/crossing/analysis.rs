@@ -1,6 +1,6 @@
-//! The rooms joined up: a bridge prepared for crossings, and what one crossing gives.
+//! A bridge prepared for crossings, its modes, influence lines and recovery worked out once; and what one crossing
+//! gives.
 
-use crate::stop_token::StopToken;
 use serde::{Deserialize, Serialize};
 
 use crate::bridge::Bridge;
@@ -15,8 +15,7 @@ use crate::error::Error;
 use crate::float_mode::Standard;
 use crate::imported::Given;
 use crate::memory;
-use crate::modal_bridge::ModalBridge;
-use crate::modal_bridge::ModeShapes;
+use crate::modal_bridge::{ModalBridge, ModeShapes};
 use crate::modes::Modes;
 use crate::passage::Passage;
 use crate::passage::settings::Settings;
@@ -24,6 +23,7 @@ use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
 use crate::statics::flexibility::Flexibility;
 use crate::statics::influence::{Quantity, Responses};
 use crate::step::vibration::Reach;
+use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 
 /// Most memory that the histories of one quantity may take [bytes].

@@ -1,6 +1,5 @@
-//! The walk through a history for its extremes: every instant, and the instants at which an axle passes a section.
+//! Extremes of all responses over a crossing, found at every instant of its history and as axles pass sections.
 
-use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use crate::crossing::envelope::{Envelope, Extreme, Extremes};
@@ -10,6 +9,7 @@ use crate::error::Error;
 use crate::lane::Lane;
 use crate::recovery::{Instant, Packed, Place, Responding, Rows, WIDTH};
 use crate::statics::influence::{Quantity, Responses};
+use crate::stop_token::StopToken;
 
 /// Instants between two questions whether to go on.
 const POLL_EVERY: usize = 1024;

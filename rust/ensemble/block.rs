@@ -1,7 +1,6 @@
-//! One block of samples through one crossing, group beside group of lanes: the step of a single crossing, chunk by chunk,
-//! and after each chunk the extremes of every response in it.
+//! One group of samples, one in each lane, through a crossing: the step of a single crossing, chunk by chunk, and after
+//! some chunks the extremes of every response in them.
 
-use crate::stop_token::StopToken;
 use std::ops::Range;
 
 use super::bounds::survey;
@@ -13,13 +12,13 @@ use super::table::{CHUNK, Chunk, Moment, Table};
 use super::tape::{Stretch, Widths};
 use crate::crossing::tail::FreeRows;
 use crate::crossing::watched::Watched;
-use crate::lane::Lane;
-use crate::lane::{Lanes, Work};
+use crate::lane::{Lane, Lanes, Work};
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
 use crate::step::newmark::Coordinate;
 use crate::step::stepper::{State, Stepper, Unsettled};
 use crate::step::vibration::{Reach, Vibration};
+use crate::stop_token::StopToken;
 
 /// Factors of one sample's bridge on what the rows multiply.
 #[derive(Debug, Clone, Copy)]

@@ -1,4 +1,4 @@
-//! When the instants of samples that share the geometry are, and where the front axle is then: all that is kept of it.
+//! Times of steps and passings, and the front axle then, for samples that share the geometry: all that is kept of it.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Responses at the steps of a sample that has few like it: as in a single crossing, response beside response.
+//! Extremes at the steps of a sample that has few like it: as in a single crossing, response beside response.
 //!
 //! To bound responses chunk by chunk pays where many samples share the influence of their loads. For a few it is less
 //! work to evaluate every response at every step, from the same numbers in the same order: the extremes are the same bits.

@@ -1,4 +1,4 @@
-//! What a sample leaves behind: one row of numbers and one of instants, and a mark if it failed.
+//! Results of a run: of each sample a row of numbers and one of instants, its fingerprint, and why it failed if it did.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The memory that a run takes: its results, and for every worker the geometry of a march and a group of samples on it.
+//! The memory that a run takes: its results, and for every worker a table of geometry and a group of samples on it.
 
 use super::block::KEPT;
 use super::clock::Pace;

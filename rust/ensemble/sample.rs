@@ -2,8 +2,7 @@
 
 use crate::error::Error;
 use crate::vehicle::Vehicle;
-use crate::vehicle::body::Coupling;
-use crate::vehicle::body::Friction;
+use crate::vehicle::body::{Coupling, Friction};
 
 /// What a factor multiplies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -27,7 +27,8 @@ pub struct Look {
     pub deflections: Vec<bool>,
     /// By response, the row that stands for it, if it is looked at.
     row_for: Vec<Option<usize>>,
-    /// Where extremes are looked for as an axle passes, from left to right: node, position [m], and which of [`Look::asked`].
+    /// Where extremes are looked for as an axle passes, from left to right: node, position [m], and which of
+    /// [`Look::asked`].
     pub places: Vec<(usize, f64, usize)>,
     /// Rows to look at there: deflection, moment and shears of each section, and last, for the ends, all.
     pub asked: Vec<Vec<usize>>,

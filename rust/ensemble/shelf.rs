@@ -1,7 +1,8 @@
-//! The geometry of the marches of a run: made when the first samples of a march come, gone when the last have.
+//! The tables of geometry of a run: each made when the first samples that share it come, gone when the last have.
 //!
-//! Workers take portions of samples in order, march after march, so that no more tables stand here at a time than there
-//! are workers, however many kinds of event there are.
+//! Samples that share a table, those of one kind of event and step, are one march. Workers take portions of samples in
+//! order, march after march, so that no more tables stand here at a time than there are workers, however many kinds of
+//! event there are.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

@@ -1,6 +1,5 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
-use crate::stop_token::StopToken;
 use std::sync::OnceLock;
 
 use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
@@ -12,15 +11,15 @@ use super::study::{Kind, Study};
 use super::table::{Table, end};
 use crate::crossing::watched::Watched;
 use crate::error::Error;
-use crate::lane::Lane;
-use crate::lane::Lanes;
 use crate::lane::dispatch::InLanes;
+use crate::lane::{Lane, Lanes};
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{bytes, room};
 use crate::step::bridge_step::ModalDamping;
 use crate::step::stepper::{Scheme, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vibration::most_steps;
+use crate::stop_token::StopToken;
 
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.

@@ -1,6 +1,6 @@
-//! Samples whose motion is their own: each a single crossing, through the same step.
+//! Samples whose motion is their own: each a single crossing, through the same step. And what any sample crosses with:
+//! its vehicles, and its bridge where that is varied.
 
-use crate::stop_token::StopToken;
 use std::sync::Arc;
 
 use super::results::{Column, Layout, Record};
@@ -16,6 +16,7 @@ use crate::passage::Passage;
 use crate::passage::settings::Settings;
 use crate::road::Road;
 use crate::step::bridge_step::ModalDamping;
+use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 
 /// The bridge of a sample, and what its rows are to multiply A and Ȧ by.

@@ -1,4 +1,4 @@
-//! What is seen of samples side by side as they pass: extremes and when, sums of squares, wheels off the road.
+//! Statistics of samples side by side: axle loads, wheels off the road, accelerations, and responses as axles pass.
 
 use super::selection::Look;
 use super::table::{Moment, Stop};

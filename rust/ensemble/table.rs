@@ -1,4 +1,5 @@
-//! What all samples share that move alike: where the axles are at every step, what lies under them, what they do.
+//! The geometry that samples share: at every step and passing where the axles are, the modes and the road under them,
+//! and their influence on the responses.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Who does the work of a run, and what others see of it.
+//! Threads and instruction set that a run works with, and its progress as others see it.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize};
 

@@ -1,4 +1,4 @@
-//! Free motion: contacts that go where their vehicles or a schedule have them, step after step.
+//! Motion of a single crossing in which vehicles roll freely: contacts go where these, or prescribed motion, have them.
 
 use super::pavement::Ground;
 use super::{Geometry, Surface};
@@ -12,7 +12,7 @@ const PLACED: f64 = 1e-9;
 /// The same where forces follow the speed of the axle too, which is off by the square of the step.
 const PLACED_BY_RATES: f64 = 1e-11;
 
-/// Free motion: each contact goes where its vehicle or a schedule has it, and everything is evaluated there.
+/// Free motion: each contact goes where its vehicle or prescribed motion has it, and everything is evaluated there.
 #[derive(Debug, Clone)]
 pub struct Free<'a, M> {
     ground: Ground<'a>,

@@ -95,7 +95,7 @@ impl Pavement {
     }
 }
 
-/// What is common to both ways of moving: the bridge, and under each contact the road of its vehicle.
+/// What prescribed and free motion have in common: the bridge, and under each contact the road of its vehicle.
 #[derive(Debug, Clone)]
 pub struct Ground<'a> {
     /// The modes along the bridge.

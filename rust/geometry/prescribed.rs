@@ -1,4 +1,5 @@
-//! Prescribed motion: where the contacts are is known beforehand, so that one table serves every sample that moves alike.
+//! Prescribed motion of a single crossing: where the contacts are is known beforehand, and laid out some steps at a
+//! time.
 
 use super::pavement::Ground;
 use super::{Geometry, Surface};
@@ -8,7 +9,7 @@ use crate::step::newmark::Coordinate;
 /// Steps of prescribed motion that are laid out at a time, so that a crossing can be ended between them.
 const LAID: usize = 64;
 
-/// Prescribed motion: known beforehand, so that one table serves every sample that moves alike.
+/// Prescribed motion: known beforehand, and laid out some steps at a time.
 #[derive(Debug, Clone)]
 pub struct Prescribed<'a, M> {
     ground: Ground<'a>,

@@ -4,9 +4,7 @@ use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
 use super::{Given, Motion, checked_length, checked_matrix, checked_positions};
-use crate::bridge::cubics::COINCIDENT;
-use crate::bridge::cubics::check_lines;
-use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::cubics::{COINCIDENT, Line, Mesh, check_lines};
 use crate::bridge::support::{Support, checked_supports};
 use crate::error::{Error, not_negative};
 use crate::imported::sides::Sides;

@@ -3,9 +3,7 @@
 use faer::Mat;
 
 use super::{Given, Motion, checked_matrix, checked_positions};
-use crate::bridge::cubics::COINCIDENT;
-use crate::bridge::cubics::check_lines;
-use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::cubics::{COINCIDENT, Line, Mesh, check_lines};
 use crate::bridge::support::{Support, checked_supports_of_given};
 use crate::error::{Error, not_negative, positive};
 use crate::imported::sides::Sides;

@@ -1,4 +1,4 @@
-//! Lines along the bridge from values and slopes at its nodes.
+//! Modes and influence lines of an imported bridge as cubics, from values and slopes on both sides of its nodes.
 
 use crate::bridge::cubics::{Line, Mesh};
 use crate::spline::between;

@@ -1,4 +1,4 @@
-//! The instruction set that samples are marched with: the widest that the processor has, unless told otherwise.
+//! The instruction set that samples are computed with: the widest that the processor has, unless told otherwise.
 
 use super::Lanes;
 use super::wide::Wide;

@@ -1,4 +1,4 @@
-//! One thing in lanes, made of one for each sample: number by number, whatever it is built of.
+//! Vehicle, bridge and contacts in lanes, gathered number by number from those of each sample.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! A vehicle on its way: how it is driven, where and when it enters, on which road.
+//! A passage worked out: where every axle of the vehicle is at any time, on which road, and when it has left.
 
 use std::ops::Range;
 
@@ -8,9 +8,8 @@ use crate::modal_bridge::ModeShapes;
 use crate::passage::motion::{Motion, reasonable};
 use crate::passage::settings::Settings;
 use crate::passage::{Braking, Direction, Drive, Passage};
-use crate::road::Road;
 use crate::road::datum::Datum;
-use crate::road::down_to_mm;
+use crate::road::{Road, down_to_mm};
 use crate::step::newmark::Coordinate;
 use crate::vehicle::Vehicle;
 use crate::vehicle::equations::ContactLaw;

@@ -1,6 +1,5 @@
 //! The bridge for Python, with what was last worked out for it.
 
-use crate::stop_token::StopToken;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use faer::Mat;
@@ -8,9 +7,7 @@ use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use super::{Matrix, Vector, matrix, preparing, rows};
-use crate::bridge::cubics::COINCIDENT;
-use crate::bridge::cubics::check_lines;
-use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::cubics::{COINCIDENT, Line, Mesh, check_lines};
 use crate::bridge::distribution::Along;
 use crate::bridge::lumping::Stations;
 use crate::bridge::support::{Fixity, Support};
@@ -27,6 +24,7 @@ use crate::recovery::Recovery;
 use crate::statics::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
 use crate::statics::influence::{self, Quantity};
 use crate::statics::settlement::Settled;
+use crate::stop_token::StopToken;
 
 fn fixity(name: &str, key: &str, free: bool) -> Result<Option<Fixity>, Error> {
     match name {

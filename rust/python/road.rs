@@ -1,6 +1,5 @@
 //! Roads for Python.
 
-use crate::stop_token::StopToken;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -13,6 +12,7 @@ use crate::road::profile::Profile;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::{Class, Spectrum};
 use crate::road::{self, golden_car};
+use crate::stop_token::StopToken;
 
 /// A road surface.
 #[pyclass(name = "Road", frozen, module = "spanwise._core")]

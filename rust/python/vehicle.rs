@@ -5,8 +5,7 @@ use pyo3::prelude::*;
 
 use super::{Vector, preparing};
 use crate::vehicle;
-use crate::vehicle::body::{Axle, Body, Coupling, Suspension};
-use crate::vehicle::body::{BuildUp, Friction};
+use crate::vehicle::body::{Axle, Body, BuildUp, Coupling, Friction, Suspension};
 
 /// Limit, initial force, stiffness of the stick, decay of a leaf spring.
 type PyFriction = (f64, f64, Option<f64>, Option<f64>);

@@ -6,13 +6,13 @@
 //! exact integral, and each step takes the mean slope of the average over it, so that no point is passed over wherever
 //! the steps lie; every step is exact for an input slope that is constant over it.
 
-use crate::stop_token::StopToken;
 use nalgebra::{SMatrix, SVector};
 
 use super::patch::Patch;
 use super::profile::Profile;
 use super::{Part, Road};
 use crate::error::{Error, finite, positive};
+use crate::stop_token::StopToken;
 
 /// Speed [m/s].
 const SPEED: f64 = 80.0 / 3.6;

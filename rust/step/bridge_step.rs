@@ -1,4 +1,7 @@
-//! The bridge in a step: how modal accelerations follow from modal forces.
+//! The bridge in a step: KTN73 Eq. 3 solved for the modal accelerations at its end.
+//!
+//! By Newmark's method Ȧ = Ȧ₀ + ½hÄ and A = A₀ + βh²Ä, where Ȧ₀ and A₀ are predicted. Then Ä + DȦ + Ω²A = ΦᵀP is
+//! (I + ½hD + βh²Ω²) Ä = ΦᵀP − (DȦ₀ + Ω²A₀): [`ModalSolve::resist`] gives what is subtracted, [`ModalSolve::apply`] Ä.
 
 use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
@@ -78,7 +81,7 @@ impl<L: Lane> ModalSolve<L> {
         self.omega2.len()
     }
 
-    /// Forces with which the modes resist: of dampers and springs.
+    /// Forces with which the modes resist: of dampers and springs, DȦ₀ + Ω²A₀.
     #[inline(always)]
     pub fn resist(&self, classical: bool, predicted: &[Coordinate<L>], forces: &mut [L]) {
         let modes = forces.len();
@@ -96,7 +99,7 @@ impl<L: Lane> ModalSolve<L> {
         }
     }
 
-    /// Accelerations under modal forces.
+    /// Accelerations under modal forces: the inverse times these.
     #[inline(always)]
     pub fn apply(&self, classical: bool, forces: &[L], accelerations: &mut [L]) {
         let modes = accelerations.len();

@@ -1,4 +1,5 @@
-//! S in δ = u − S p: what the increments of the forces take off what the elements follow, through bridge and vehicles.
+//! The compliance S in δ = u − S p: how much each unit of contact or friction force takes off the shortening that the
+//! contacts and friction elements follow, because bridge and vehicles give way.
 
 use super::coupled_forces::Elements;
 use super::newmark::Newmark;

@@ -1,4 +1,6 @@
-//! The force of one axle: its law, with friction and lift-off, and where that meets δ = u − S p.
+//! The contact law of an axle, tyre and suspension with friction and lift-off, and where it meets δ = u − S p.
+//!
+//! The law stands at [`Contact`]; its numbers come from the [`ContactLaw`] of a vehicle.
 
 use super::friction::{Law, Stroke};
 use crate::lane::Lane;
@@ -15,7 +17,7 @@ pub struct Weights<L> {
     pub rate: L,
     /// Of d̈ [s²]; one for a mass in rigid contact, for which d and ḋ do not count.
     pub acceleration: L,
-    /// Whether any lane has more than the value.
+    /// Whether no lane has more than the value: δ = d.
     pub plain: bool,
 }
 

@@ -1,5 +1,5 @@
-//! How large a step is: sizes that callers can give in literals, so that loops run a known number of times, and the room
-//! that a step of that size works in.
+//! Numbers of modes, contacts and coordinates in a step: callers can give the usual ones in literals, so that loops run
+//! a known number of times; and the room that a step of that size works in.
 
 use super::contact::{HELD, Prepared};
 use super::coupled_forces::Known;
@@ -69,14 +69,14 @@ impl Form {
         self.elements.contacts + self.elements.rubbing
     }
 
-    /// Where each part of a [`Coupling`] begins, and where the last ends.
+    /// Where each part of a [`Coupling`](super::compliance::Coupling) begins, and where the last ends.
     #[inline(always)]
     pub const fn parts(self) -> [usize; 5] {
         let (each, n) = (self.contacts() * self.modes, self.all());
         [each, 2 * each, 3 * each, 3 * each + n * n, 3 * each + n * n + n * HELD]
     }
 
-    /// How many numbers a [`Coupling`] has.
+    /// How many numbers a [`Coupling`](super::compliance::Coupling) has.
     #[inline(always)]
     pub const fn width(self) -> usize {
         self.parts()[4]

@@ -385,7 +385,7 @@ impl<L: Lane> Stepper<L> {
         self.vehicle_gap(form, desk);
     }
 
-    /// Solves for the increments and moves bridge and vehicles under them.
+    /// Solves for the increments and moves bridge (by Eq. 3, now under all of P) and vehicles under them.
     #[inline(always)]
     pub(super) fn solve_forces(
         &self,
@@ -492,7 +492,8 @@ impl<L: Lane> Stepper<L> {
         self.elements.hold(form.elements, compliance, held);
     }
 
-    /// The bridge below the contacts: where it would be under the static loads, what it does under others.
+    /// The road and the bridge below the contacts: what they make of δ with the bridge moving, by Eq. 3, under the static
+    /// loads alone.
     #[inline(always)]
     fn bridge_gap(&self, form: Form, geometry: &impl Geometry<L>, desk: &mut Desk<'_, L>) {
         let (modes, contacts) = (form.modes, form.contacts());

@@ -6,8 +6,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
-use crate::vehicle::body::Friction;
-use crate::vehicle::body::{Axle, Body, Coupling, Suspension};
+use crate::vehicle::body::{Axle, Body, Coupling, Friction, Suspension};
 use crate::vehicle::dense;
 
 /// Ratio of the lowest to the highest squared frequency below which a motion counts as free.
