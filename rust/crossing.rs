@@ -15,7 +15,7 @@ pub mod watched;
 
 use crate::crossing::history::History;
 use crate::crossing::tail::Watch;
-use crate::crossing::time_loop::March;
+use crate::crossing::time_loop::TimeLoop;
 use crate::error::Error;
 use crate::geometry::free::Free;
 use crate::geometry::pavement::Ground;
@@ -76,9 +76,9 @@ pub fn cross(
         let mirrored = courses.iter().map(|course| course.direction == Direction::Left).collect();
         let start = (0..owner.len()).map(|axle| motion(0, axle)).collect();
         let mut geometry = Free::new(ground, free, mirrored, start, rates);
-        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
+        TimeLoop::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
     } else {
         let mut geometry = Prescribed::new(ground, motion, steps.count, rates);
-        March::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
+        TimeLoop::new(model, &courses, settings, &steps).run(&mut geometry, watch, stop)
     }
 }

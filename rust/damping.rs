@@ -4,7 +4,6 @@ use faer::{Mat, Side};
 
 use crate::error::{Error, finite, not_negative};
 use crate::modes::Modes;
-use crate::step::bridge_step::ModalDamping;
 
 /// Viscous damping of the bridge.
 #[derive(Debug, Clone)]
@@ -20,6 +19,15 @@ pub enum Damping {
     },
     /// C at the mass stations [N s/m]: D = ΦᵀCΦ is full in general.
     Viscous(Mat<f64>),
+}
+
+/// Damping of the included modes, D = ΦᵀCΦ.
+#[derive(Debug, Clone)]
+pub enum ModalDamping {
+    /// Ratios to critical, one per mode: D = diag(2ζω).
+    Classical(Vec<f64>),
+    /// Full D [1/s].
+    Coupled(Mat<f64>),
 }
 
 impl PartialEq for Damping {

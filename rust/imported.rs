@@ -12,13 +12,12 @@ use faer::Mat;
 
 use crate::bridge::cubics::{COINCIDENT, Line, MAX_STATIONS, Mesh};
 use crate::bridge::support::Support;
-use crate::damping::Damping;
+use crate::damping::{Damping, ModalDamping};
 use crate::error::{Error, finite, positive};
 use crate::modal_bridge::narrowest_panel;
 use crate::modes::Modes;
 use crate::recovery::ModalFactors;
 use crate::statics::influence::{Quantity, Responses};
-use crate::step::bridge_step::ModalDamping;
 
 /// A bridge given by lines along the path of the wheels.
 #[derive(Debug, Clone)]

@@ -2,12 +2,11 @@
 
 use crate::bridge::Bridge;
 use crate::bridge::cubics::{COINCIDENT, Line, Mesh};
-use crate::damping::Damping;
+use crate::damping::{Damping, ModalDamping};
 use crate::error::Error;
 use crate::modes::Modes;
 use crate::spline::{curvature, slope, value};
 use crate::statics::flexibility::Flexibility;
-use crate::step::bridge_step::ModalDamping;
 use crate::vehicle::Vehicle;
 use crate::vehicle::body::Suspension;
 

@@ -11,13 +11,12 @@ use faer::Mat;
 
 use crate::bridge::cubics::{Line, Mesh};
 use crate::crossing::history::History;
-use crate::damping::Damping;
+use crate::damping::{Damping, ModalDamping};
 use crate::error::Error;
 use crate::lane::wide::Wide;
 use crate::modes::Modes;
 use crate::spline::value;
 use crate::statics::influence::Responses;
-use crate::step::bridge_step::ModalDamping;
 use crate::stop_token::StopToken;
 
 /// How responses follow from the included modes.

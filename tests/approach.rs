@@ -2,8 +2,8 @@
 
 use crate::problems::vehicles::half_car;
 use crate::problems::{kishan_vehicle, kishan_vehicle_with_friction};
+use spanwise::damping::ModalDamping;
 use spanwise::geometry::{Geometry, Surface};
-use spanwise::step::bridge_step::ModalDamping;
 use spanwise::step::newmark::Coordinate;
 use spanwise::step::stepper::{Scheme, State, Stepper};
 use spanwise::step::unit::{Moving, Propulsion};

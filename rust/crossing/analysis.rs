@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::bridge::Bridge;
-use crate::bridge::cubics::check_lines;
+use crate::bridge::cubics::{COINCIDENT, check_lines};
 use crate::crossing::cross;
 use crate::crossing::envelope::{Envelope, axle_loads};
 use crate::crossing::extremes::Survey;
@@ -311,7 +311,7 @@ fn checked_sections(sections: &[f64], length: f64) -> Result<Vec<f64>, Error> {
             let allowed = format!("must lie on the beam, 0 to {length} m");
             return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
         }
-        if i > 0 && x - sections[i - 1] <= crate::bridge::cubics::COINCIDENT * length {
+        if i > 0 && x - sections[i - 1] <= COINCIDENT * length {
             let allowed = format!("must be greater than the section before it, {} m", sections[i - 1]);
             return Err(Error::input(format!("sections[{i}]"), format!("{x} m"), allowed));
         }

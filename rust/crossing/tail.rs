@@ -1,12 +1,12 @@
 //! How long the tail after a crossing is: until no response can exceed what it has reached.
 
 use crate::crossing::history::History;
+use crate::damping::ModalDamping;
 use crate::error::Error;
 use crate::lane::Lane;
 use crate::modal_bridge::ModalBridge;
 use crate::recovery::Rows;
 use crate::statics::influence::{Quantity, Responses};
-use crate::step::bridge_step::ModalDamping;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
 

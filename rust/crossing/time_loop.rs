@@ -15,7 +15,7 @@ use crate::step::newmark::Coordinate;
 use crate::step::rolling::{Brakes, Follow, Rolling};
 use crate::step::stepper::{Scheme, State, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
-use crate::step::vehicle_step::Rig;
+use crate::step::vehicle_step::VehicleSolve;
 use crate::step::vibration::{LOOK_EVERY, Vibration};
 use crate::stop_token::StopToken;
 
@@ -81,7 +81,7 @@ impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Way for Free<'_, M> {
 }
 
 /// A crossing being marched through time.
-pub struct March<'a> {
+pub struct TimeLoop<'a> {
     courses: &'a [Course<'a>],
     settings: &'a Settings,
     length: f64,
@@ -106,7 +106,7 @@ pub struct March<'a> {
     braking_since: Vec<Option<f64>>,
 }
 
-impl<'a> March<'a> {
+impl<'a> TimeLoop<'a> {
     /// Ready to start.
     pub fn new(model: &'a ModalBridge, courses: &'a [Course<'a>], settings: &'a Settings, steps: &Steps) -> Self {
         let length = model.shapes.mesh().length();
@@ -143,7 +143,7 @@ impl<'a> March<'a> {
         // No more than twice as much as is needed for certain.
         history.reserve(steps.count + steps.tail.min(steps.count) + 16);
         let stepper = Stepper::new(&model.omega, &model.damping, &moving, &scheme);
-        March {
+        TimeLoop {
             courses,
             settings,
             length,
@@ -307,7 +307,10 @@ impl<'a> March<'a> {
             travel[v] = Coordinate { x: travel[v].x, v: 0.0, a: 0.0 };
             course.axles.clone().for_each(|axle| geometry.stop(axle));
             let assembly = course.vehicle.assembly();
-            self.stepper.hold(v, Rig::new(assembly, true, Some(&assembly.standing_mass()), self.h, self.settings.beta));
+            self.stepper.hold(
+                v,
+                VehicleSolve::new(assembly, true, Some(&assembly.standing_mass()), self.h, self.settings.beta),
+            );
             self.history.vehicles[v].stopped = Some(time);
         }
         Ok(())

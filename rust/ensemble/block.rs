@@ -6,10 +6,10 @@ use std::ops::Range;
 use super::bounds::survey;
 use super::few;
 use super::placing::Shared;
-use super::selection::Look;
+use super::selection::Selection;
 use super::statistics::{Ride, watch_moment, watch_stop};
-use super::table::{CHUNK, Chunk, Moment, Table};
-use super::tape::{Stretch, Widths};
+use super::table::{CHUNK, Chunk, PassingInfluence, Table};
+use super::tape::{Tape, Widths};
 use crate::crossing::tail::FreeRows;
 use crate::crossing::watched::Watched;
 use crate::lane::{Lane, Lanes, Work};
@@ -22,7 +22,7 @@ use crate::stop_token::StopToken;
 
 /// Factors of one sample's bridge on what the rows multiply.
 #[derive(Debug, Clone, Copy)]
-pub struct Bridge<L> {
+pub struct BridgeFactors<L> {
     /// On A: the factor of the stiffness.
     pub coordinates: L,
     /// On Ȧ: how the damping matrix grows.
@@ -71,7 +71,7 @@ pub struct Group<'a, L> {
     /// Where they are.
     pub geometry: Shared<'a, L>,
     /// Their bridges, if these differ.
-    pub bridge: Option<Bridge<L>>,
+    pub bridge: Option<BridgeFactors<L>>,
     /// When they end.
     pub ends: Ends<L>,
     /// Vertical displacements of the bodies, as rows over the coordinates of the vehicle.
@@ -124,7 +124,7 @@ pub struct Way<'a> {
     /// The rows of the bridge.
     pub rows: &'a Rows,
     /// The responses looked at.
-    pub look: &'a Look,
+    pub look: &'a Selection,
     /// The same without vehicles on the bridge.
     pub free: &'a FreeRows,
     /// Whether to look for trouble after every step and not only after every chunk.
@@ -150,18 +150,18 @@ fn longest(widths: &Widths) -> usize {
 /// What a worker needs again for each group, so that memory is asked for once.
 #[derive(Debug, Clone)]
 pub struct Scratch<L> {
-    stretch: Stretch<L>,
+    stretch: Tape<L>,
     glanced: Vec<[L; 2]>,
     between: Vec<L>,
-    moment: Moment,
+    moment: PassingInfluence,
     chunks: Vec<Chunk>,
 }
 
 impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let (stretch, glanced) = (Stretch::new(), Vec::new());
-        Scratch { stretch, glanced, between: Vec::new(), moment: Moment::default(), chunks: Vec::new() }
+        let (stretch, glanced) = (Tape::new(), Vec::new());
+        Scratch { stretch, glanced, between: Vec::new(), moment: PassingInfluence::default(), chunks: Vec::new() }
     }
 }
 
@@ -233,7 +233,7 @@ impl<L: Lane> Traveller<'_, '_, L> {
         let reach = self.vibration.reach(&self.state.modes);
         match self.group.bridge {
             None => reach,
-            Some(Bridge { coordinates, rates }) => reach.scaled(coordinates, rates),
+            Some(BridgeFactors { coordinates, rates }) => reach.scaled(coordinates, rates),
         }
     }
 
@@ -275,7 +275,7 @@ struct Stepping<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     steppers: &'s mut Steppers<L>,
     way: &'s Way<'s>,
-    stretch: &'s mut Stretch<L>,
+    stretch: &'s mut Tape<L>,
     place: Where,
     steps: Range<usize>,
     stop: StopToken<'s>,
@@ -318,7 +318,7 @@ struct Swinging<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     reach: &'s mut Option<Reach<L>>,
     rates: bool,
-    stretch: &'s mut Stretch<L>,
+    stretch: &'s mut Tape<L>,
     steps: Range<usize>,
     /// The first of them in which the vehicle is not followed.
     alone: usize,
@@ -387,9 +387,9 @@ struct Looking<'s, L> {
     steps: Range<usize>,
     /// The next stop.
     stop: &'s mut usize,
-    stretch: &'s mut Stretch<L>,
+    stretch: &'s mut Tape<L>,
     between: &'s mut Vec<L>,
-    moment: &'s mut Moment,
+    moment: &'s mut PassingInfluence,
 }
 
 impl<L: Lane> Work for Looking<'_, L> {
@@ -428,8 +428,8 @@ impl<L: Lane> Work for Looking<'_, L> {
 /// The responses at the steps of a stretch being looked at.
 struct Surveying<'s, L> {
     watched: &'s mut [Watched<L>],
-    look: &'s Look,
-    stretch: &'s Stretch<L>,
+    look: &'s Selection,
+    stretch: &'s Tape<L>,
     chunks: Option<&'s [Chunk]>,
     glanced: &'s mut Vec<[L; 2]>,
 }
@@ -447,7 +447,7 @@ impl<L: Lane> Work for Surveying<'_, L> {
 fn look_at_steps<L: Lanes>(
     way: &Way<'_>,
     watched: &mut [Watched<L>],
-    stretch: &Stretch<L>,
+    stretch: &Tape<L>,
     loaded: bool,
     (glanced, own_chunks): (&mut Vec<[L; 2]>, &mut Vec<Chunk>),
 ) {
@@ -602,7 +602,7 @@ pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
     let widths = Widths { felt: true, ..way.widths(0) };
     let (width, axles) = (widths.coordinates, widths.axles);
     let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
-    let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Stretch::new());
+    let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Tape::new());
     let longest = longest(&widths);
     for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
         let end = (start + longest * CHUNK).min(table.path.steps + 1);
@@ -610,7 +610,7 @@ pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
         L::dispatch(Resting { way, loads, steps: start..end, stretch: &mut stretch });
         look_at_steps(way, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
     }
-    let mut own_moment = Moment::default();
+    let mut own_moment = PassingInfluence::default();
     let mut then = vec![L::splat(0.0); width + axles];
     for (number, stop) in table.stops.iter().enumerate() {
         let moment = table.moment(number, rows, look, &mut own_moment);
@@ -625,7 +625,7 @@ struct Resting<'s, L> {
     way: &'s Way<'s>,
     loads: &'s [L],
     steps: Range<usize>,
-    stretch: &'s mut Stretch<L>,
+    stretch: &'s mut Tape<L>,
 }
 
 impl<L: Lane> Work for Resting<'_, L> {

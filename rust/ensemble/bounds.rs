@@ -8,7 +8,7 @@
 use super::selection::Row;
 use super::statistics::value;
 use super::table::{Chunk, PART, PARTS, middle};
-use super::tape::Stretch;
+use super::tape::Tape;
 use crate::crossing::watched::Watched;
 use crate::lane::Lane;
 
@@ -18,7 +18,7 @@ use crate::lane::Lane;
 pub fn survey<L: Lane>(
     watched: &mut [Watched<L>],
     rows: &[Row],
-    stretch: &Stretch<L>,
+    stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,
     glanced: &mut Vec<[L; 2]>,
 ) {
@@ -42,7 +42,7 @@ fn survey_sizes<L: Lane>(
     a: usize,
     watched: &mut [Watched<L>],
     rows: &[Row],
-    stretch: &Stretch<L>,
+    stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,
     glanced: &mut Vec<[L; 2]>,
 ) {

@@ -3,15 +3,15 @@
 //! To bound responses chunk by chunk pays where many samples share the influence of their loads. For a few it is less
 //! work to evaluate every response at every step, from the same numbers in the same order: the extremes are the same bits.
 
-use super::selection::Look;
-use super::tape::Stretch;
+use super::selection::Selection;
+use super::tape::Tape;
 use crate::crossing::watched::Watched;
 use crate::lane::Lane;
 use crate::recovery::{Place, Placed, Responding, Rows, WIDTH};
 
 /// Looks for the extremes of every row at the steps of a stretch of one sample; `places` are those of its axles, by step
 /// and axle, none where there is no axle on the bridge.
-pub fn survey<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Look, stretch: &Stretch<L>, places: &[Place]) {
+pub fn survey<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Selection, stretch: &Tape<L>, places: &[Place]) {
     let (c, axles) = (stretch.widths.coordinates, if places.is_empty() { 0 } else { stretch.widths.axles });
     let mut steps = Steps {
         rows,

@@ -1,6 +1,7 @@
 //! What differs from sample to sample: number, kind of event, speed, and factors on vehicle and bridge.
 
 use crate::error::Error;
+use crate::passage::motion::reasonable;
 use crate::vehicle::Vehicle;
 use crate::vehicle::body::{Coupling, Friction};
 
@@ -213,7 +214,7 @@ impl Samples {
             if !(speed.is_finite() && speed > 0.0) {
                 return Err(Error::input(key(), speed, "must be finite and greater than 0"));
             }
-            crate::passage::motion::reasonable(key(), speed, "m/s")?;
+            reasonable(key(), speed, "m/s")?;
         }
         for factors in &self.factors {
             let Factors { parameter, width, values } = factors;

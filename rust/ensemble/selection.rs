@@ -16,7 +16,7 @@ pub struct Row {
 
 /// The responses of a study.
 #[derive(Debug, Clone)]
-pub struct Look {
+pub struct Selection {
     /// Chosen responses, in the order of the results.
     pub chosen: Vec<usize>,
     /// The distinct rows among them.
@@ -28,7 +28,7 @@ pub struct Look {
     /// By response, the row that stands for it, if it is looked at.
     row_for: Vec<Option<usize>>,
     /// Where extremes are looked for as an axle passes, from left to right: node, position [m], and which of
-    /// [`Look::asked`].
+    /// [`Selection::asked`].
     pub places: Vec<(usize, f64, usize)>,
     /// Rows to look at there: deflection, moment and shears of each section, and last, for the ends, all.
     pub asked: Vec<Vec<usize>>,
@@ -36,13 +36,13 @@ pub struct Look {
     pub tips: [Option<(usize, f64)>; 2],
 }
 
-impl Look {
+impl Selection {
     /// At all responses of some quantities.
     pub fn new(rows: &Rows, responses: &Responses, quantities: &[Quantity]) -> Self {
         let deflections = responses.range(Quantity::Deflection);
         let ends = [0, rows.mesh().panels()];
         let sections = responses.sections().len();
-        let mut look = Look {
+        let mut look = Selection {
             chosen: Vec::new(),
             rows: Vec::new(),
             row_of: Vec::new(),

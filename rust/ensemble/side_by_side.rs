@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::block::{Bridge, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
+use super::block::{BridgeFactors, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
 use super::placing::{Couplings, Shared};
 use super::results::{Column, Failure, Layout, Record, instant_of_stop};
 use super::sample::Samples;
@@ -10,12 +10,12 @@ use super::single::{Scaled, passages};
 use super::study::{Kind, Study};
 use super::table::{Table, end};
 use crate::crossing::watched::Watched;
+use crate::damping::ModalDamping;
 use crate::error::Error;
 use crate::lane::dispatch::InLanes;
 use crate::lane::{Lane, Lanes};
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{bytes, room};
-use crate::step::bridge_step::ModalDamping;
 use crate::step::stepper::{Scheme, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vibration::most_steps;
@@ -107,7 +107,7 @@ struct Ready {
     starter: Stepper<f64>,
     approach: Stepper<f64>,
     stepper: Stepper<f64>,
-    bridge: Option<Bridge<f64>>,
+    bridge: Option<BridgeFactors<f64>>,
     /// ω² of its slowest mode.
     slowest: f64,
     /// Factor of the bridge's stiffness.
@@ -163,7 +163,7 @@ impl Task<'_> {
             approach,
             stepper,
             static_loads: vehicle.static_loads(gravity),
-            bridge: scaled.as_ref().map(|s| Bridge { coordinates: s.stiffness, rates: s.rates }),
+            bridge: scaled.as_ref().map(|s| BridgeFactors { coordinates: s.stiffness, rates: s.rates }),
             stiffness: scaled.map_or(1.0, |s| s.stiffness),
         })
     }
@@ -298,8 +298,8 @@ impl Task<'_> {
             free: study.settings.tail == Tail::Free,
         };
         let bridge = ready_of(0).bridge.is_some().then(|| {
-            let of = |f: fn(Bridge<f64>) -> f64| L::from_fn(|lane| ready_of(lane).bridge.map_or(1.0, f));
-            Bridge { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
+            let of = |f: fn(BridgeFactors<f64>) -> f64| L::from_fn(|lane| ready_of(lane).bridge.map_or(1.0, f));
+            BridgeFactors { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
         });
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
         let couplings = (samples.alike() && table.laid_out).then(|| {

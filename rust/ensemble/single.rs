@@ -10,12 +10,12 @@ use crate::crossing;
 use crate::crossing::analysis::Watching;
 use crate::crossing::envelope::{Extremes, axle_loads};
 use crate::crossing::history::History;
+use crate::damping::ModalDamping;
 use crate::error::Error;
 use crate::modal_bridge::ModalBridge;
 use crate::passage::Passage;
 use crate::passage::settings::Settings;
 use crate::road::Road;
-use crate::step::bridge_step::ModalDamping;
 use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 

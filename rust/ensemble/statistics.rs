@@ -1,8 +1,8 @@
 //! Statistics of samples side by side: axle loads, wheels off the road, accelerations, and responses as axles pass.
 
-use super::selection::Look;
-use super::table::{Moment, Stop};
-use super::tape::{Stretch, Widths};
+use super::selection::Selection;
+use super::table::{PassingInfluence, Stop};
+use super::tape::{Tape, Widths};
 use crate::crossing::watched::Watched;
 use crate::lane::Lane;
 
@@ -43,7 +43,7 @@ impl<L: Lane> Ride<L> {
     /// Takes in the last chunk of a stretch; `left` says how much of the step that follows a step the lanes go, and sums
     /// grow where the steps are `counted`. Lanes that have ended go on as they were.
     #[inline(always)]
-    pub fn take(&mut self, stretch: &Stretch<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
+    pub fn take(&mut self, stretch: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let Some(chunk) = stretch.chunks().last() else { return };
         let (widths, width, from) = (&stretch.widths, stretch.widths.all(), chunk.from);
@@ -114,8 +114,8 @@ pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
 #[allow(clippy::too_many_arguments)] // each is one thing
 pub fn watch_stop<L: Lane>(
     watched: &mut [Watched<L>],
-    look: &Look,
-    (stop, number, moment): (&Stop, usize, &Moment),
+    look: &Selection,
+    (stop, number, moment): (&Stop, usize, &PassingInfluence),
     [before, after]: [&[L]; 2],
     widths: &Widths,
     jumps: usize,
@@ -139,8 +139,8 @@ pub fn watch_stop<L: Lane>(
 #[inline(always)]
 pub fn watch_moment<L: Lane>(
     watched: &mut [Watched<L>],
-    look: &Look,
-    (stop, number, moment): (&Stop, usize, &Moment),
+    look: &Selection,
+    (stop, number, moment): (&Stop, usize, &PassingInfluence),
     then: &[L],
 ) {
     let at = L::splat(number as f64);

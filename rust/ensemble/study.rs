@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::results::{Failure, Layout};
 use super::sample::{Parameter, Samples};
-use super::selection::Look;
-use super::table::{Advance, Ground, Table};
+use super::selection::Selection;
+use super::table::{Advance, StudyRoad, Table};
 use crate::crossing::analysis::Analysis;
 use crate::crossing::tail::FreeRows;
 use crate::error::{Error, positive};
@@ -14,7 +14,7 @@ use crate::geometry::pavement::Pavement;
 use crate::passage::planned::Course;
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{MAX_STEPS, Steps};
-use crate::passage::{Drive, Passage};
+use crate::passage::{Direction, Drive, Passage};
 use crate::road::random::Synthesis;
 use crate::statics::influence::Quantity;
 use crate::vehicle::body::BuildUp;
@@ -47,7 +47,7 @@ pub struct Study {
     /// Longest way per step [m].
     advance: Option<f64>,
     /// The responses looked at.
-    pub look: Look,
+    pub look: Selection,
     /// Their rows without vehicles on the bridge.
     pub free: FreeRows,
     /// Whether samples share the geometry.
@@ -112,12 +112,12 @@ impl Plan {
         let constant = |passage: &Passage| *passage.drive.as_ref().unwrap_or(&settings.drive) == Drive::ConstantSpeed;
         let shares = kinds.iter().all(|passages| match &passages[..] {
             [one] => {
-                let plain = one.direction == crate::passage::Direction::Right && one.entry == 0.0 && one.road.is_none();
+                let plain = one.direction == Direction::Right && one.entry == 0.0 && one.road.is_none();
                 plain && constant(one) && one.speed.is_none()
             }
             _ => false,
         });
-        let look = Look::new(&analysis.rows, &analysis.responses, &quantities);
+        let look = Selection::new(&analysis.rows, &analysis.responses, &quantities);
         if look.chosen.is_empty() {
             return Err(Error::input("quantities", "[]", "at least one response must be looked at"));
         }
@@ -257,7 +257,7 @@ impl Study {
             direction: 1.0,
         };
         let slopes = !vehicle.assembly().contacts.iter().all(|contact| contact.law.is_plain());
-        let ground = Ground { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
+        let ground = StudyRoad { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
         Table::new(self.path(march), &model.shapes, (rows, responses, &self.look), slopes, ground, laid_out)
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::selection::Look;
+use super::selection::Selection;
 use crate::geometry::Surface;
 use crate::geometry::pavement::{Pavement, Share};
 use crate::modal_bridge::ModeShapes;
@@ -73,7 +73,7 @@ pub struct Stop {
     side: Place,
     /// If the load of that axle and the modal accelerations jump, the step whose they are.
     pub jump: Option<usize>,
-    /// Which of [`Look::asked`] to look at.
+    /// Which of [`Selection::asked`] to look at.
     pub asked: usize,
     /// The row of the shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
     pub tip: Option<(usize, f64)>,
@@ -83,7 +83,7 @@ pub struct Stop {
 
 /// What the axles do to the bridge at a stop.
 #[derive(Debug, Clone, Default)]
-pub struct Moment {
+pub struct PassingInfluence {
     /// Influence of each axle on the rows asked for, row by row.
     pub influence: Vec<f64>,
     /// What static loads of one at the axles make of the coordinates, axle by axle.
@@ -156,7 +156,7 @@ pub struct Table {
     /// If so, what static loads of one at the axles make of the coordinates, by step, axle and coordinate.
     statics: Vec<f64>,
     /// And the same with the influence on the rows, at every stop.
-    moments: Vec<Moment>,
+    moments: Vec<PassingInfluence>,
     /// And the influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
     /// [`Table::chunks`].
     ready: Option<Vec<Chunk>>,
@@ -164,14 +164,14 @@ pub struct Table {
 
 /// The roads of a study: a part that is the same for all samples, and a random one of each sample's own.
 #[derive(Debug, Clone, Copy)]
-pub struct Ground<'a> {
+pub struct StudyRoad<'a> {
     /// What all share, on its way.
     pub pavement: &'a Pavement,
     /// What the samples' own roads have in common.
     pub own: Option<&'a Synthesis>,
 }
 
-impl Ground<'_> {
+impl StudyRoad<'_> {
     fn below(&self, x: f64) -> Below {
         let Some(own) = self.own else { return Below::Given(self.pavement.at(x)) };
         let (share, x) = self.pavement.share(x);
@@ -190,9 +190,9 @@ impl Table {
     pub fn new(
         path: Advance,
         shapes: &ModeShapes,
-        (rows, responses, look): (&Rows, &Responses, &Look),
+        (rows, responses, look): (&Rows, &Responses, &Selection),
         slopes: bool,
-        ground: Ground<'_>,
+        ground: StudyRoad<'_>,
         laid_out: bool,
     ) -> Self {
         let (kinds, axles, steps) = (if slopes { 3 } else { 1 }, path.behind.len(), path.steps);
@@ -229,7 +229,8 @@ impl Table {
         if !laid_out {
             return table;
         }
-        table.moments = table.stops.iter().map(|stop| table.fill_moment(stop, rows, look, Moment::default())).collect();
+        table.moments =
+            table.stops.iter().map(|stop| table.fill_moment(stop, rows, look, PassingInfluence::default())).collect();
         let all = look.rows.len() * axles * (steps + 1 - table.first);
         if all <= READY {
             let chunks = (table.first..=steps).step_by(CHUNK);
@@ -259,7 +260,7 @@ impl Table {
         from: usize,
         to: usize,
         rows: &Rows,
-        look: &Look,
+        look: &Selection,
         scratch: &'a mut Vec<Chunk>,
     ) -> &'a [Chunk] {
         let count = (to - from).div_ceil(CHUNK);
@@ -274,7 +275,7 @@ impl Table {
         &scratch[..count]
     }
 
-    fn fill(&self, from: usize, rows: &Rows, look: &Look, chunk: &mut Chunk) {
+    fn fill(&self, from: usize, rows: &Rows, look: &Selection, chunk: &mut Chunk) {
         let axles = self.axles();
         let to = (from + CHUNK).min(self.path.steps + 1);
         let places = &self.places[from * axles..to * axles];
@@ -319,7 +320,13 @@ impl Table {
     }
 
     /// What the axles do to the bridge at a stop.
-    pub fn moment<'a>(&'a self, stop: usize, rows: &Rows, look: &Look, scratch: &'a mut Moment) -> &'a Moment {
+    pub fn moment<'a>(
+        &'a self,
+        stop: usize,
+        rows: &Rows,
+        look: &Selection,
+        scratch: &'a mut PassingInfluence,
+    ) -> &'a PassingInfluence {
         if self.laid_out {
             return &self.moments[stop];
         }
@@ -327,8 +334,14 @@ impl Table {
         scratch
     }
 
-    fn fill_moment(&self, stop: &Stop, rows: &Rows, look: &Look, mut moment: Moment) -> Moment {
-        let Moment { influence, statics } = &mut moment;
+    fn fill_moment(
+        &self,
+        stop: &Stop,
+        rows: &Rows,
+        look: &Selection,
+        mut moment: PassingInfluence,
+    ) -> PassingInfluence {
+        let PassingInfluence { influence, statics } = &mut moment;
         influence.clear();
         statics.clear();
         let standing = |axle: usize| match axle == stop.axle {
@@ -390,7 +403,7 @@ pub fn passings(path: &Advance, places: &[f64]) -> Vec<Passing> {
 }
 
 /// Every passing of a section or an end, as [`crate::crossing::extremes`] looks for them, on both sides.
-fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Look) -> Vec<Stop> {
+fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Selection) -> Vec<Stop> {
     let last = rows.mesh().panels();
     let at: Vec<f64> = look.places.iter().map(|place| place.1).collect();
     let of = |Passing { step, axle, place, fraction, position }: Passing| {

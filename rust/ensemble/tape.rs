@@ -40,7 +40,7 @@ impl Widths {
 
 /// Steps that are kept until their responses are looked at.
 #[derive(Debug, Clone)]
-pub struct Stretch<L> {
+pub struct Tape<L> {
     /// What a step consists of.
     pub widths: Widths,
     /// Number of the first step.
@@ -67,11 +67,11 @@ pub struct Kept<'s, L> {
     pub parts: &'s [[L; 2]],
 }
 
-impl<L: Lane> Stretch<L> {
+impl<L: Lane> Tape<L> {
     /// Nothing yet.
     pub fn new() -> Self {
         let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true };
-        Stretch { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
+        Tape { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
     }
 
     /// Begins anew with a step of this number, with room for so many chunks.
@@ -154,8 +154,8 @@ impl<L: Lane> Stretch<L> {
     }
 }
 
-impl<L: Lane> Default for Stretch<L> {
+impl<L: Lane> Default for Tape<L> {
     fn default() -> Self {
-        Stretch::new()
+        Tape::new()
     }
 }

@@ -3,7 +3,6 @@
 
 use super::pavement::Ground;
 use super::{Geometry, Surface};
-use crate::lane::Lane;
 use crate::step::newmark::Coordinate;
 
 /// Steps of prescribed motion that are laid out at a time, so that a crossing can be ended between them.
@@ -73,7 +72,7 @@ impl<'a, M: Fn(usize, usize) -> Coordinate<f64>> Prescribed<'a, M> {
     }
 }
 
-impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed<'_, M> {
+impl<M: Fn(usize, usize) -> Coordinate<f64>> Geometry<f64> for Prescribed<'_, M> {
     fn advance(&mut self) {
         self.step += 1;
         // One more than where they are, for the look ahead.
@@ -88,28 +87,26 @@ impl<L: Lane, M: Fn(usize, usize) -> Coordinate<f64>> Geometry<L> for Prescribed
         next.iter().take(self.contacts).all(|motion| motion.a == 0.0)
     }
 
-    fn motion(&self, contact: usize) -> Coordinate<L> {
-        let Coordinate { x, v, a } = self.here()[contact];
-        Coordinate { x: L::splat(x), v: L::splat(v), a: L::splat(a) }
+    fn motion(&self, contact: usize) -> Coordinate<f64> {
+        self.here()[contact]
     }
 
-    fn shapes(&self, contact: usize, shapes: &mut [L]) {
+    fn shapes(&self, contact: usize, shapes: &mut [f64]) {
         let table = self.table[self.entry(contact, 0)..].iter().step_by(self.kinds);
         for (shape, &value) in shapes.iter_mut().zip(table) {
-            *shape = L::splat(value);
+            *shape = value;
         }
     }
 
-    fn slope(&self, contact: usize, mode: usize) -> L {
-        L::splat(self.table[self.entry(contact, mode) + 1])
+    fn slope(&self, contact: usize, mode: usize) -> f64 {
+        self.table[self.entry(contact, mode) + 1]
     }
 
-    fn curvature(&self, contact: usize, mode: usize) -> L {
-        L::splat(self.table[self.entry(contact, mode) + 2])
+    fn curvature(&self, contact: usize, mode: usize) -> f64 {
+        self.table[self.entry(contact, mode) + 2]
     }
 
-    fn surface(&self, contact: usize) -> Surface<L> {
-        let Surface { elevation, slope, curvature } = self.surfaces[contact];
-        Surface { elevation: L::splat(elevation), slope: L::splat(slope), curvature: L::splat(curvature) }
+    fn surface(&self, contact: usize) -> Surface<f64> {
+        self.surfaces[contact]
     }
 }

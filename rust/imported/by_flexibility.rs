@@ -5,7 +5,7 @@ use faer::{Mat, Side};
 
 use super::{Given, Motion, checked_length, checked_matrix, checked_positions};
 use crate::bridge::cubics::{COINCIDENT, Line, Mesh, check_lines};
-use crate::bridge::support::{Support, checked_supports};
+use crate::bridge::support::{Fixity, Support, checked_supports};
 use crate::error::{Error, not_negative};
 use crate::imported::sides::Sides;
 use crate::spline::{End, spline_slopes};
@@ -154,8 +154,7 @@ impl Given {
             supports.push((*support, actual(&line, &|node| line.at_node(node))));
         }
         for (&(station, compliance), line) in redundants.iter().zip(&reactions) {
-            let fixity =
-                crate::bridge::support::Fixity::Elastic { vertical: 1.0 / compliance, rotation: 0.0 }.simplest();
+            let fixity = Fixity::Elastic { vertical: 1.0 / compliance, rotation: 0.0 }.simplest();
             supports.push((Support { at: data.stations[station], fixity }, line.clone()));
         }
         supports.sort_by(|a, b| a.0.at.total_cmp(&b.0.at));

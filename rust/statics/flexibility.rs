@@ -15,6 +15,7 @@ use faer::{Mat, Side};
 
 use crate::bridge::Bridge;
 use crate::bridge::cubics::{Line, Mesh};
+use crate::bridge::support::Fixity;
 use crate::error::Error;
 use crate::float_mode::Standard;
 
@@ -217,7 +218,7 @@ impl Flexibility {
             let stiffness = supports[i].fixity.rotation();
             (stiffness > 0.0).then(|| (Restraint::Slope(node(i)), 1.0 / stiffness))
         };
-        let built_in = |i: usize| supports[i].fixity == crate::bridge::support::Fixity::Clamped;
+        let built_in = |i: usize| supports[i].fixity == Fixity::Clamped;
         let mut outer: Vec<Spring> = Vec::new();
         let (determinate, support) = if last == 0 || (built_in(0) && supports[0].at == 0.0) {
             if last > 0 {

@@ -7,20 +7,12 @@ use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
 
 use super::newmark::Coordinate;
+use crate::damping::ModalDamping;
 use crate::lane::Lane;
 use crate::lane::gather::gather;
 
 /// What a D may have beside its diagonal, relative to that, for the modes to be damped each by itself: rounding.
 const BESIDE: f64 = 1e-9;
-
-/// Damping of the included modes, D = ΦᵀCΦ.
-#[derive(Debug, Clone)]
-pub enum ModalDamping {
-    /// Ratios to critical, one per mode: D = diag(2ζω).
-    Classical(Vec<f64>),
-    /// Full D [1/s].
-    Coupled(Mat<f64>),
-}
 
 /// (I + ½hD + βh²Ω²)⁻¹, D and Ω².
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use super::newmark::Coordinate;
 use super::sizes::Desk;
 use super::stepper::{State, Stepper, Unsettled};
 use super::unit::{Propulsion, Unit};
-use super::vehicle_step::Rig;
+use super::vehicle_step::VehicleSolve;
 use crate::geometry::Geometry;
 use crate::lane::Lane;
 
@@ -122,7 +122,7 @@ impl Rolling {
             self.guess.resize(unit.rig.size, Coordinate::rest());
             let (bodies, before) =
                 (&desk.bodies[unit.coordinates.clone()], &state.coordinates[unit.coordinates.clone()]);
-            Rig::guess(&newmark, bodies, before, &mut self.guess);
+            VehicleSolve::guess(&newmark, bodies, before, &mut self.guess);
             let mut force = 0.0;
             for contact in unit.contacts.clone() {
                 // Forces along the road go on from the last two steps.

@@ -4,7 +4,7 @@
 //! everything at the same instant t_{n+1}. The modes are coupled to the vehicles only through the contact forces, and
 //! bodies that rub on each other through friction, so these are the unknowns: each follows δ_k = u_k − Σ S_kj p_j.
 
-use super::bridge_step::{ModalDamping, ModalSolve};
+use super::bridge_step::ModalSolve;
 use super::compliance::{Coupling, above};
 use super::contact::{Contact, Prepared};
 use super::coupled_forces::{Elements, Rubbing};
@@ -13,7 +13,8 @@ use super::newmark::{Coordinate, Newmark};
 use super::sizes::{Desk, FIVE_AXLES, FOUR_AXLES, Form, HALF_CAR, Room, THREE_AXLES, TWO_AXLES, USUAL};
 use super::stand::Stand;
 use super::unit::{Moving, Propulsion, Unit};
-use super::vehicle_step::Rig;
+use super::vehicle_step::VehicleSolve;
+use crate::damping::ModalDamping;
 use crate::geometry::Geometry;
 use crate::lane::Lane;
 use crate::lane::gather::Gather;
@@ -128,7 +129,7 @@ impl<L: Lane> Stepper<L> {
             let assembly = vehicle.assembly;
             let (c, r, q) = (assembly.contacts.len(), assembly.frictions.len(), assembly.mass.nrows());
             units.push(Unit {
-                rig: Rig::new(assembly, vehicle.propulsion == Propulsion::Rolling, None, h, beta),
+                rig: VehicleSolve::new(assembly, vehicle.propulsion == Propulsion::Rolling, None, h, beta),
                 propulsion: vehicle.propulsion,
                 direction: L::splat(vehicle.direction),
                 contacts: contact..contact + c,
@@ -229,7 +230,7 @@ impl<L: Lane> Stepper<L> {
 
     /// Takes a vehicle that has come to rest as standing: its wheels stay where they are, held against the grade, and it
     /// rocks about them.
-    pub fn hold(&mut self, vehicle: usize, standing: Rig<L>) {
+    pub fn hold(&mut self, vehicle: usize, standing: VehicleSolve<L>) {
         self.units[vehicle].rig = standing;
         self.units[vehicle].propulsion = Propulsion::Prescribed;
         self.above = above(&self.newmark, &self.units, &self.elements);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::newmark::{Coordinate, Newmark};
 use super::sizes::Form;
 use super::stand::Stand;
-use super::vehicle_step::Rig;
+use super::vehicle_step::VehicleSolve;
 use crate::lane::Lane;
 use crate::lane::gather::{Gather, gather};
 use crate::vehicle::equations::Assembly;
@@ -35,7 +35,7 @@ pub struct Moving<'a> {
 /// A vehicle's part in the step.
 #[derive(Debug, Clone)]
 pub struct Unit<L> {
-    pub rig: Rig<L>,
+    pub rig: VehicleSolve<L>,
     pub propulsion: Propulsion,
     pub direction: L,
     pub contacts: Range<usize>,

@@ -10,7 +10,7 @@ use crate::vehicle::equations::Assembly;
 
 /// A vehicle's matrices for steps of one length. Elements are its contacts, then its friction elements.
 #[derive(Debug, Clone)]
-pub struct Rig<L> {
+pub struct VehicleSolve<L> {
     /// Number of coordinates.
     pub size: usize,
     /// Number of contacts.
@@ -41,7 +41,7 @@ pub struct Rig<L> {
     resisting: Vec<L>,
 }
 
-gather!(Rig {
+gather!(VehicleSolve {
     size,
     contacts,
     elements,
@@ -67,7 +67,7 @@ struct Linear<L> {
 
 gather!(Linear { damping, stiffness });
 
-impl<L: Lane> Rig<L> {
+impl<L: Lane> VehicleSolve<L> {
     /// The same vehicle in every lane. One that `rolls` freely has inertia against the pitching of its parts along the
     /// road; `extra_mass` is added to M besides, if given.
     pub fn new(assembly: &Assembly, rolls: bool, extra_mass: Option<&DMatrix<f64>>, h: f64, beta: f64) -> Self {
@@ -92,7 +92,7 @@ impl<L: Lane> Rig<L> {
         let surge_receptance: Vec<DVector<f64>> = surge_rows.iter().map(|row| product(&inverse, row)).collect();
         let zero = L::splat(0.0);
         let linear = assembly.damping.iter().chain(assembly.stiffness.iter()).any(|&v| v != 0.0);
-        Rig {
+        VehicleSolve {
             size,
             contacts: assembly.contacts.len(),
             elements: rows.len(),

@@ -9,7 +9,7 @@ use spanwise::crossing::analysis::{Analysis, Preparation, Watching};
 use spanwise::crossing::cross;
 use spanwise::crossing::envelope::{Envelope, axle_loads};
 use spanwise::crossing::history::History;
-use spanwise::damping::Damping;
+use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::results::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::side_by_side::Task;
@@ -29,7 +29,6 @@ use spanwise::road::random::Synthesis;
 use spanwise::road::spectrum::Spectrum;
 use spanwise::statics::flexibility::Flexibility;
 use spanwise::statics::influence::Quantity;
-use spanwise::step::bridge_step::ModalDamping;
 use spanwise::vehicle::Vehicle;
 
 use super::vehicles::{articulated, half_car, leaf};
