@@ -56,6 +56,17 @@ enum Part {
     Datum(Datum),
 }
 
+impl Part {
+    fn at(&self, x: f64) -> Point {
+        match self {
+            Part::Random(random) => random.at(x),
+            Part::Profile(profile) => profile.at(x),
+            Part::Feature(feature) => feature.at(x),
+            Part::Datum(datum) => datum.taken_off(x),
+        }
+    }
+}
+
 impl From<Random> for Road {
     fn from(random: Random) -> Self {
         Road { parts: vec![Part::Random(Arc::new(random))] }
@@ -110,12 +121,7 @@ impl Road {
     pub fn at(&self, x: f64) -> Point {
         let mut sum = Point { elevation: 0.0, slope: 0.0, curvature: 0.0 };
         for part in &self.parts {
-            let point = match part {
-                Part::Random(random) => random.at(x),
-                Part::Profile(profile) => profile.at(x),
-                Part::Feature(feature) => feature.at(x),
-                Part::Datum(datum) => datum.taken_off(x),
-            };
+            let point = part.at(x);
             sum.elevation += point.elevation;
             sum.slope += point.slope;
             sum.curvature += point.curvature;
@@ -142,6 +148,21 @@ impl Road {
         };
         let end = start + (far - start).clamp(-FITTED, FITTED);
         Datum::fitted(start, end, measured).raised(features.sum())
+    }
+
+    /// How much higher than the least-squares line of the whole way the line is from which a vehicle feels the road: at
+    /// `start` and at `far` [m]. Motion is told from the former, for the first 10 m say little of where a road leads.
+    pub fn drift(&self, start: f64, far: f64) -> [f64; 2] {
+        let felt = self.datum(start, far);
+        let off = self.off(felt);
+        // What is random is told as it is.
+        let measured = off.parts.iter().filter(|part| !matches!(part, Part::Random(_) | Part::Feature(_)));
+        if !measured.clone().any(|part| matches!(part, Part::Profile(_))) {
+            return [0.0; 2];
+        }
+        let elevation = |x: f64| measured.clone().map(|part| part.at(x).elevation).sum();
+        let whole = Datum::fitted(start, far, elevation);
+        [start, far].map(|x| whole.taken_off(x).elevation)
     }
 
     /// The road off a line.

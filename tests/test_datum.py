@@ -336,3 +336,35 @@ def test_who_brakes_to_rest_as_prescribed_holds_its_static_loads() -> None:
     run = sw.cross(BRIDGE, [passage], road=road, damping=0.05, **given)
     assert run.vehicle.stopped is not None
     assert run.axle_loads[-1] == pytest.approx(run.static_axle_loads, rel=1e-4)
+
+
+@pytest.mark.parametrize("direction", ["right", "left"])
+def test_motion_is_told_from_the_line_of_the_whole_way(direction: str) -> None:
+    """The line of the first 10 m leads decimetres off a rough road, which is not to be seen."""
+    x = np.arange(-320.0, 360.0, 0.1)
+    bridge = sw.Bridge(spans=[40.0], EI=4e10, mass=1.2e4)
+    profile = sw.Profile(x, sw.ISO8608("C", seed=16).elevation(x) + 300.0 + 0.02 * x)
+    run = sw.cross(
+        bridge,
+        sw.Passage(sw.vehicles.half_car(), direction=direction, speed=20.0),
+        road=profile,
+        approach=200.0,
+        damping=0.02,
+    )
+    motion = run.vehicle
+    way = motion.axle_positions if direction == "right" else 40.0 - motion.axle_positions
+    over = (way[:, 0] > -150.0) & (way[:, 0] < 40.0)
+    assert np.abs(motion.elevations[over]).max() < 0.1
+    assert np.abs(motion.heave[over]).max() < 0.1
+    # Off a line all the same: what is told differs from the profile by one.
+    x_1 = motion.axle_positions[over, 0]
+    off = motion.elevations[over, 0] - profile.elevation(x_1)
+    line = np.polynomial.Polynomial.fit(x_1, off, 1)
+    assert np.abs(off - line(x_1)).max() < 1e-9
+    assert line.convert().coef[1] == pytest.approx(-0.02, abs=2e-4)
+    # Rates are those of the displacements, and the body stays on its wheels.
+    for each in (motion.bodies[0].heave, motion.bodies[0].pitch, *motion.hops):
+        rate = np.gradient(each.displacement, run.time)[1:-1]
+        assert np.abs(rate - each.velocity[1:-1]).max() < 0.02 * np.abs(each.velocity).max()
+    sunk = np.array([hop.displacement for hop in motion.hops]).T + motion.elevations
+    assert np.abs(sunk[over]).max() < 0.02

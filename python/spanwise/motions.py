@@ -68,9 +68,9 @@ class VehicleMotion(Value):
     axle_positions : ndarray, shape (time, axle)
         From the left end of the bridge [m].
     elevations : ndarray, shape (time, axle)
-        Of the road under the axles, up [m], as they move the vehicle: off the datum of its way (see
-        `cross`), faded in, averaged over the contact patch. Heave and pitch are off the same line.
-        Elevations as given are ``road.elevation(axle_positions)``.
+        Of the road under the axles, up [m], as they move the vehicle: faded in, averaged over the
+        contact patch, and of a `Profile` off the least-squares line of the whole way, as heave,
+        pitch and hops are too. Elevations as given are ``road.elevation(axle_positions)``.
     suspension_shortenings : ndarray, shape (time, axle)
         Since the static state [m].
     friction : ndarray, shape (time, axle)

@@ -195,7 +195,7 @@ impl<'a> Course<'a> {
         if self.direction == Direction::Right { way } else { length - way }
     }
 
-    /// The line from which it feels its road: from the start of the approach to the far end of the bridge.
+    /// The line from which it feels its road: see [`Road::datum`].
     fn datum(&self, settings: &Settings, length: f64) -> Datum {
         self.road.datum(self.place(-settings.approach, length), self.place(length, length))
     }

@@ -219,30 +219,41 @@ impl Crossing {
     }
 
     /// Heave and pitch of every body of a vehicle, the displacement of the mass of every axle, and the travel, each with
-    /// its first and second derivative, at every instant.
-    fn motion<'py>(&self, py: Python<'py>, vehicle: usize) -> PyResult<Matrix<'py>> {
+    /// its first and second derivative, at every instant: told from a line that is lower by `drift` where its way over the
+    /// bridge begins, and by so much more per way than the line from which it feels its road.
+    fn motion<'py>(&self, py: Python<'py>, vehicle: usize, drift: [f64; 2]) -> PyResult<Matrix<'py>> {
         let history = &self.outcome.history;
         let (Some(mover), Some(columns)) = (self.vehicles.get(vehicle), history.vehicles.get(vehicle)) else {
             let allowed = format!("must be below {}, the number of vehicles", self.vehicles.len());
             return Err(Error::input("vehicle", vehicle, allowed).into());
         };
         let assembly = mover.assembly();
-        let mut lines: Vec<Option<&DVector<f64>>> = assembly.bodies.iter().flatten().map(Some).collect();
-        lines.extend(assembly.hops.iter().map(Option::as_ref));
+        // Of each what gives it from the coordinates, where it is ahead of the centre of mass, and whether it is a pitch.
+        let mut lines: Vec<(Option<&DVector<f64>>, f64, bool)> = Vec::new();
+        for ([heave, pitch], &at) in assembly.bodies.iter().zip(&assembly.body_positions) {
+            lines.extend([(Some(heave), at, false), (Some(pitch), at, true)]);
+        }
+        lines.extend(assembly.hops.iter().zip(&assembly.contacts).map(|(hop, c)| (hop.as_ref(), c.position, false)));
         let width = 3 * (lines.len() + 1);
+        let [higher, steeper] = drift;
         let values = interruptible(py, |stop| {
             let mut values = Vec::new();
             memory::reserve(&mut values, "states", "motion", history.len() * width)?;
             for row in history.motion.chunks_exact(history.motion_width()) {
                 let own = &row[columns.motion.clone()];
-                for line in &lines {
-                    for derivative in 0..3 {
+                let travel = &own[own.len() - 3..];
+                for &(line, at, pitches) in &lines {
+                    let rise = match pitches {
+                        true => [steeper, 0.0, 0.0],
+                        false => [higher + steeper * (travel[0] + at), steeper * travel[1], steeper * travel[2]],
+                    };
+                    for (derivative, rise) in rise.into_iter().enumerate() {
                         let coordinates = own.iter().skip(derivative).step_by(3);
-                        let sum = line.map_or(0.0, |line| line.iter().zip(coordinates).map(|(b, q)| b * q).sum());
-                        values.push(sum);
+                        let sum = |line: &DVector<f64>| line.iter().zip(coordinates).map(|(b, q)| b * q).sum::<f64>();
+                        values.push(line.map_or(0.0, |line| sum(line) - rise));
                     }
                 }
-                values.extend(&own[own.len() - 3..]);
+                values.extend(travel);
                 stop.check()?;
             }
             Ok(values)

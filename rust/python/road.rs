@@ -106,6 +106,11 @@ impl PyRoad {
         self.0.period()
     }
 
+    /// See [`Road::drift`].
+    fn drift(&self, start: f64, far: f64) -> [f64; 2] {
+        self.0.drift(start, far)
+    }
+
     fn check_holds(&self, start: f64, end: f64) -> PyResult<()> {
         Ok(self.0.check_holds(start, end)?)
     }
