@@ -7,7 +7,7 @@ times as wide as what is published, so that footbridges, models in laboratories 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Final, TypeAlias
@@ -15,6 +15,7 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._conditions import Conditions
 from spanwise.bridge import Bridge
 from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.traffic import Drive, Passage, Speeds
@@ -45,6 +46,9 @@ _LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _HEAVY = 45.0, 60.0, 120.0, 25e3
 #: row [m], which no lorry has, or none with axles loaded alike, as those of a coach are.
 _ON_RAILS, _LONG, _LONG_ALIKE, _ALIKE = 5e7, 30.0, 15.0, 0.5
 
+#: Ratio to critical damping from which on it is hardly one of a bridge.
+_DAMPED: Final = 0.15
+
 #: How far springs may give way under the weight that they carry [m]: then it bounces at 0.5 Hz.
 _SAG: Final = 1.0
 
@@ -61,14 +65,15 @@ def doubts(
     speed: float | None,
     drive: Drive,
     road: Road,
-    gravity: float,
+    conditions: Conditions,
     step: float | None,
     advance: float | None = None,
 ) -> tuple[str, ...]:
     """Sentences to say of what a crossing, or the events of an ensemble, hardly mean."""
     span = _longest_span(bridge)
     moving = float(bridge.masses.sum()) * span / bridge.length
-    found = list(_frequency(bridge, span, first_frequency))
+    gravity = conditions.core["gravity"]
+    found = [*_frequency(bridge, span, first_frequency), *_damping(conditions)]
     seen: set[str] = set()
     for passage in (each for event in events for each in event):
         fastest = _fastest(passage, speed, drive)
@@ -90,11 +95,9 @@ def doubts(
 
 
 def doubts_of_roads(roads: Iterable[Road]) -> tuple[str, ...]:
-    """What was said of measured roads as they were made."""
+    """What was said of roads as they were made."""
     parts = [part for road in roads for part in (road.parts if isinstance(road, Sum) else (road,))]
-    found = (
-        f"road: {each}" for part in parts if isinstance(part, Profile) for each in part._doubts
-    )
+    found = (f"road: {each}" for part in parts for each in part._doubts)
     return tuple(dict.fromkeys(found))
 
 
@@ -146,6 +149,19 @@ def _frequency(bridge: Bridge, span: float, first: float) -> Iterator[str]:
         )
 
 
+def _damping(conditions: Conditions) -> Iterator[str]:
+    """Of the bridge: ratios in percent, or tenths for hundredths."""
+    ratios = conditions.core["damping"]
+    # Rayleigh's constants may damp upper modes more than any bridge is.
+    by_rayleigh = isinstance(conditions.settings["damping"], Mapping)
+    ratio = (min if by_rayleigh else max)(ratios, default=0.0)
+    if ratio >= _DAMPED:
+        yield (
+            f"damping = {ratio:.4g}: is {100.0 * ratio:.4g} % of critical, where bridges have up "
+            "to about 5 %; it is a ratio, 0.02 for 2 %"
+        )
+
+
 def _deflection(
     passage: Passage, span: float, moving: float, first: float, gravity: float
 ) -> str | None:
@@ -170,8 +186,8 @@ def _deflection(
 def _loads(passage: Passage, moving: float, gravity: float) -> str | None:
     """Of a vehicle on a bridge that is no model: loads in kN, masses in t."""
     most = float(passage.vehicle.static_loads(gravity).max())
-    # Powers of ten are loads of reference, by which results are scaled.
-    if not 0.0 < most < _LIGHT or moving < _FULL_SIZE or math.log10(most).is_integer():
+    # A load of 1 N is one of reference, by which results are scaled; 100 may be kN.
+    if not 0.0 < most < _LIGHT or moving < _FULL_SIZE or most == 1.0:
         return None
     return (
         f"loads: the largest axle load is {most:.4g} N, less than that of a pedestrian, on a span "

@@ -154,7 +154,7 @@ class Recipe(Value):
             speed=None,
             drive=self.drive,
             road=self.settings["road"],
-            gravity=self.conditions.core["gravity"],
+            conditions=self.conditions,
             # Side by side no way is longer than by default, or `advance`, whatever the step is.
             step=None if simple and self.advance is None else self.conditions.core["step"],
             advance=self.advance if simple else None,

@@ -198,7 +198,7 @@ def cross(
         speed=speed,
         drive=driven,
         road=surface,
-        gravity=conditions.core["gravity"],
+        conditions=conditions,
         step=conditions.core["step"],
     )
     run = Run(bridge, passages, surface, settings, computed, doubted)

@@ -1,8 +1,8 @@
-"""What of a measured profile is hardly meant: elevations in other units, drop-outs."""
+"""What of a road is hardly meant: values in other units, drop-outs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -25,6 +25,35 @@ _OFF, _UNUSUAL = 0.15, 20.0
 
 #: A change of slope from point to point that no road has [-].
 _NO_GRADE: Final = 0.5
+
+#: G_d(n0) from which on a road is none [m3]: class H of ISO 8608, the roughest, begins at 0.13.
+_NO_ROAD: Final = 1.0
+
+#: Heights of a step or a bump, and widths of a joint, that are hardly exceeded [m].
+HIGH, WIDE = 0.5, 1.0
+
+#: Rise by length up to which a ramp, or a camber, may be higher; and a bump, up to a length [m].
+STEEPEST, FLAT, LONG = 0.25, 0.05, 100.0
+
+
+def doubts_of_roughness(G: float) -> Iterator[str]:
+    """Of the roughness of a random road: tabulated digits without their power of ten."""
+    if G >= _NO_ROAD:
+        yield (
+            f"G = {G:.6g}: in m3, where class H of ISO 8608, the roughest, begins at 0.13; the "
+            f"standard tabulates 1e-6 m3: if {G:.6g} of these are meant, write {G * 1e-6:.6g}"
+        )
+
+
+def doubts_of_metres(of: object, largest: Mapping[str, float]) -> Iterator[str]:
+    """Of arguments of a feature, by the values up to which they are usual: in mm."""
+    for key, most in largest.items():
+        value = getattr(of, key)
+        if abs(value) > most:
+            yield (
+                f"{key} = {value:.6g}: in m, more than roads have; if mm are meant, write "
+                f"{value * 1e-3:.6g}"
+            )
 
 
 def doubts(x: Array, elevations: Array) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
 
 import numpy as np
@@ -57,6 +58,13 @@ class Road(Brief):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_core", self._made())
+        for doubt in self._doubts:
+            warn(doubt, PlausibilityWarning)
+
+    @cached_property
+    def _doubts(self) -> tuple[str, ...]:
+        """What was warned of."""
+        return ()
 
     def _made(self) -> CoreRoad:
         raise TypeError("Road stands for all kinds of roads; make one of them, such as Smooth()")

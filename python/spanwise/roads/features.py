@@ -3,21 +3,38 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, fields
+from functools import cached_property
 from math import isfinite
 from typing import ClassVar
 
 from spanwise import _core
 from spanwise._checks import number
+from spanwise.roads._doubts import FLAT, HIGH, LONG, STEEPEST, WIDE, doubts_of_metres
 from spanwise.roads.base import CONTACT_PATCH, Road
 
 
 class _Feature(Road):
-    """A road whose arguments all are numbers."""
+    """A road whose arguments all are numbers.
+
+    Warns
+    -----
+    PlausibilityWarning
+        If a height, a depth or a gap is so large that it is hardly in metres.
+    """
 
     def __post_init__(self) -> None:
         for each in fields(self):
             self._set(**{each.name: number(each.name, getattr(self, each.name))})
         super().__post_init__()
+
+    @property
+    def _largest(self) -> dict[str, float]:
+        """Up to which values the arguments are not doubted [m]."""
+        return dict.fromkeys(self._heights, HIGH)
+
+    @cached_property
+    def _doubts(self) -> tuple[str, ...]:
+        return tuple(doubts_of_metres(self, self._largest))
 
 
 def _finite(key: str, value: float) -> float:
@@ -82,6 +99,10 @@ class Ramp(_Feature):
     def _made(self) -> _core.Road:
         return _core.Road.ramp(self.start, self.end, self.height, self.contact_patch)
 
+    @property
+    def _largest(self) -> dict[str, float]:
+        return {"height": max(HIGH, STEEPEST * (self.end - self.start))}
+
 
 @dataclass(frozen=True, repr=False)
 class Bump(_Feature):
@@ -113,6 +134,11 @@ class Bump(_Feature):
     def _made(self) -> _core.Road:
         edge = 0.5 * self.length
         return _core.Road.plateau(self.at, self.length, self.height, edge, self.contact_patch)
+
+    @property
+    def _largest(self) -> dict[str, float]:
+        # A long one is a sag or a crest of the road.
+        return {"height": max(HIGH, FLAT * min(self.length, LONG))}
 
 
 @dataclass(frozen=True, repr=False)
@@ -184,6 +210,10 @@ class Joint(_Feature):
         depth = _finite("depth", self.depth)
         return _core.Road.plateau(self.at, self.gap, -depth, 0.0, self.contact_patch)
 
+    @property
+    def _largest(self) -> dict[str, float]:
+        return {**super()._largest, "gap": WIDE}
+
 
 @dataclass(frozen=True, repr=False)
 class Camber(_Feature):
@@ -213,3 +243,7 @@ class Camber(_Feature):
 
     def _made(self) -> _core.Road:
         return _core.Road.camber(self.start, self.end, self.rise, self.contact_patch)
+
+    @property
+    def _largest(self) -> dict[str, float]:
+        return {"rise": max(HIGH, STEEPEST * (self.end - self.start))}

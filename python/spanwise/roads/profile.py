@@ -16,7 +16,6 @@ from spanwise import _core
 from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
 from spanwise._keys import suggesting
 from spanwise._renamed import renamed
-from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads._doubts import doubts
 from spanwise.roads._options import called, given
 from spanwise.roads.base import CONTACT_PATCH, Road
@@ -101,12 +100,9 @@ class Profile(Road):
             max_gap=None if max_gap is None else number("max_gap", max_gap),
         )
         self.__post_init__()
-        for doubt in self._doubts:
-            warn(doubt, PlausibilityWarning)
 
     @cached_property
     def _doubts(self) -> tuple[str, ...]:
-        """What was warned of."""
         return tuple(doubts(self.x, self.elevations))
 
     @cached_property

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, Final
 
 from spanwise import _core
 from spanwise._checks import choice, count, number, numbers, positive, shown
+from spanwise.roads._doubts import doubts_of_roughness
 from spanwise.roads.base import CONTACT_PATCH, Road
 from spanwise.roads.roughness import CLASSES
 
@@ -54,6 +56,11 @@ class ISO8608(Road):
     ------
     ValueError
         If a value is not allowed, naming it and what is.
+
+    Warns
+    -----
+    PlausibilityWarning
+        If `G` is 1 m3 or more, nearly twice where class H begins to be rougher than any road.
 
     Notes
     -----
@@ -104,6 +111,10 @@ class ISO8608(Road):
         )
         self._set(period=road.period)
         return road
+
+    @cached_property
+    def _doubts(self) -> tuple[str, ...]:
+        return tuple(doubts_of_roughness(self.G))
 
     def _roughness(self) -> float:
         given = _optional("G", self.G)
