@@ -6,7 +6,7 @@ start of the approach. A vehicle starts at rest on the road under it.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -339,14 +339,16 @@ def test_who_brakes_to_rest_as_prescribed_holds_its_static_loads() -> None:
 
 
 @pytest.mark.parametrize("direction", ["right", "left"])
-def test_motion_is_told_from_the_line_of_the_whole_way(direction: str) -> None:
+def test_motion_is_told_from_the_line_of_the_whole_way(
+    direction: Literal["right", "left"],
+) -> None:
     """The line of the first 10 m leads decimetres off a rough road, which is not to be seen."""
     x = np.arange(-320.0, 360.0, 0.1)
     bridge = sw.Bridge(spans=[40.0], EI=4e10, mass=1.2e4)
     profile = sw.Profile(x, sw.ISO8608("C", seed=16).elevation(x) + 300.0 + 0.02 * x)
     run = sw.cross(
         bridge,
-        sw.Passage(sw.vehicles.half_car(), direction=direction, speed=20.0),
+        sw.Passage(vehicle=sw.vehicles.half_car(), direction=direction, speed=20.0),
         road=profile,
         approach=200.0,
         damping=0.02,
