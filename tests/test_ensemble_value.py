@@ -139,6 +139,23 @@ def test_written_and_read(found: sw.Ensemble, tmp_path: Path) -> None:
         assert json.loads(str(archive["settings"]))["ensemble"]["seed"] == 5
 
 
+@pytest.mark.filterwarnings("ignore:centres of mass at road level")
+@pytest.mark.parametrize(
+    "drive",
+    [
+        "constant-traction",
+        sw.Braking(deceleration=1.0, start=5.0),
+        sw.Speeds(times=[0.0, 2.0], speeds=[20.0, 22.0]),
+    ],
+    ids=lambda drive: type(drive).__name__,
+)
+def test_drives_are_written_and_read(drive: Any, tmp_path: Path) -> None:
+    speed = None if isinstance(drive, sw.Speeds) else 20.0
+    found = sw.ensemble(BRIDGE, CAR, samples=2, speed=speed, damping=0.02, modes=3, drive=drive)
+    found.to_npz(tmp_path / "out.npz")
+    check_equal(sw.Ensemble.read(tmp_path / "out.npz"), found)
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("cuts", [(5,), (1, 2, 11)])
 def test_parts_make_the_whole(name: str, cuts: tuple[int, ...], tmp_path: Path) -> None:
@@ -163,7 +180,8 @@ def test_parts_of_other_processes() -> None:
 @pytest.mark.parametrize(
     ("other", "says"),
     [
-        ({"first": 3}, r"ensembles\[1\]: samples 3 to 3 are in ensembles\[0\] too"),
+        ({"first": 2}, r"ensembles\[1\]: samples 2 to 3 are in ensembles\[0\] too"),
+        ({"first": 1, "samples": 2}, r"ensembles\[1\]: samples 1 to 2 are in ensembles\[0\] too"),
         (
             {"first": 6},
             r"samples from 6: samples 4 to 5 are missing before it; compute them with first=4, "
@@ -193,9 +211,50 @@ def test_parts_that_do_not_fit(other: dict[str, Any], says: str) -> None:
         "sections": [5.0, 9.0],
     }
     one = sw.ensemble(**(given | {"first": 0}))
-    two = sw.ensemble(**(given | ({"samples": 1} if other.get("first") == 3 else {}) | other))
+    two = sw.ensemble(**(given | other))
     with pytest.raises(ValueError, match=says):
         sw.concat([one, two])
+
+
+def test_constants_that_differ_from_part_to_part() -> None:
+    given: dict[str, Any] = {"damping": 0.02, "modes": 3, "sections": [9.0]}
+    parts = [
+        sw.ensemble(
+            BRIDGE, TRUCK, samples=n, first=a, speed=v, factors={"body_mass": f}, kind=k, **given
+        )
+        for n, a, v, f, k in (
+            (2, 0, 20.0, 1.1, None),
+            (3, 2, 20.0, 1.2, [0, 0, 0]),
+            (1, 5, 25.0, 1.2, None),
+        )
+    ]
+    speeds, factors = [20.0] * 5 + [25.0], {"body_mass": [1.1] * 2 + [1.2] * 4}
+    every = sw.ensemble(BRIDGE, TRUCK, samples=6, speed=speeds, factors=factors, **given)
+    check_equal(sw.concat(parts), every)
+
+
+def test_parts_of_another_version() -> None:
+    one, two = part(0, 5), part(5, 7)
+    two._rows.columns["news"] = (0, 0)
+    with pytest.raises(
+        ValueError, match=r"ensembles\[1\]: is of another version than ensembles\[0\]"
+    ):
+        sw.concat([one, two])
+
+
+def test_parts_are_told_by_their_places() -> None:
+    last, first, second, other = (
+        sw.ensemble(BRIDGE, TRUCK, samples=4, first=a, seed=seed, speed=20.0, damping=0.02, modes=3)
+        for a, seed in ((8, 5), (0, 5), (2, 5), (4, 6))
+    )
+    with pytest.raises(
+        ValueError, match=r"ensembles\[2\]: samples 2 to 3 are in ensembles\[1\] too"
+    ):
+        sw.concat([last, first, second])
+    with pytest.raises(
+        ValueError, match=r"ensembles\[2\]: seed = 6: must be as in ensembles\[1\], 5"
+    ):
+        sw.concat([last, first, other])
 
 
 def test_what_is_no_list_of_parts() -> None:
@@ -205,7 +264,7 @@ def test_what_is_no_list_of_parts() -> None:
         sw.concat([1])  # type: ignore[list-item]
     with pytest.raises(TypeError, match="must be a list of Ensemble"):
         sw.concat(whole("varied"))
-    assert sw.concat([whole("varied")]) == whole("varied")
+    assert sw.concat([whole("varied")]) is whole("varied")
 
 
 def failing(first: int, count: int) -> sw.Ensemble:
@@ -233,17 +292,34 @@ def test_failures_are_kept(tmp_path: Path) -> None:
     again = sw.Ensemble.read(tmp_path / "out.npz")
     assert joined == every == again == pickle.loads(pickle.dumps(every))
     assert again.failures == every.failures
+    with np.load(tmp_path / "out.npz") as archive:
+        assert archive["failures"].tolist() == [11, 14, 17]
     assert np.isnan(again.envelope("moment").max_time[[1, 4, 7]]).all()
     assert not np.isnan(again.envelope("moment").max_position[[0, 2]]).any()
     with pytest.raises(RuntimeError, match="row 1: sample number 11 failed"):
         again.run(1)
     table = again.to_pandas()
+    assert table.index.tolist() == [*range(10, 18)]
+    assert again.to_pandas("axle").index.get_level_values("sample").unique().equals(table.index)
     assert table["failed"].tolist() == [row % 3 == 1 for row in range(8)]
     assert table["moment_max"].isna().equals(table["failed"])
 
 
-@pytest.mark.parametrize("damage", ["text", "npy", "pickle", "member", "shape", "hash", "packed"])
-def test_what_is_no_archive(damage: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("damage", "says"),
+    [
+        ("text", "File is not a zip file"),
+        ("npy", "File is not a zip file"),
+        ("pickle", "Object arrays cannot be loaded when allow_pickle=False"),
+        ("member", "instants is not a file in the archive"),
+        ("shape", r"moment_max = shape \(1, 4\): must be \(12, 4\)"),
+        ("digests", r"digests = shape \(1,\): must be \(12,\)"),
+        ("hash", r"hash = .*: is not that of its samples, "),
+        ("version", "is of another version of spanwise"),
+        ("packed", "is compressed, as no archive of an ensemble is"),
+    ],
+)
+def test_what_is_no_archive(damage: str, says: str, tmp_path: Path) -> None:
     path = tmp_path / "out.npz"
     whole("side by side").to_npz(path)
     with np.load(path) as archive:
@@ -264,11 +340,18 @@ def test_what_is_no_archive(damage: str, tmp_path: Path) -> None:
         if damage == "member":
             del arrays["instants"]
         elif damage == "shape":
-            arrays["moment_max"] = arrays["moment_max"][:-1]
+            arrays["moment_max"] = arrays["moment_max"][:1]
+        elif damage == "digests":
+            arrays["digests"] = arrays["digests"][:1]
+        elif damage == "version":
+            layout = json.loads(str(arrays["layout"]))
+            arrays["layout"] = np.array(json.dumps(layout | {"format": 0}))
         else:
             arrays["digests"] = arrays["digests"] + np.uint64(1)
         np.savez(path, **arrays)
-    with pytest.raises(ValueError, match=f"{path.name}: is not the archive of an ensemble"):
+    with pytest.raises(
+        ValueError, match=f"{path.name}: is not the archive of an ensemble: .*{says}"
+    ):
         sw.Ensemble.read(path)
 
 
@@ -304,6 +387,7 @@ def test_a_row_a_sample() -> None:
 @pytest.mark.parametrize(
     ("by", "quantity", "factor"),
     [
+        ("section", "deflection", "deflection"),
         ("section", "moment", "hogging"),
         ("section", "shear", "shear"),
         ("support", "reactions", "reactions"),
@@ -318,10 +402,38 @@ def test_a_row_a_sample_and_place(by: Any, quantity: str, factor: Any) -> None:
     assert table.index.get_level_values(by).unique().tolist() == extremes.x.tolist()
     for name in ("max", "min", "max_time", "min_position"):
         assert_array_equal(table[f"{quantity}_{name}"].unstack(), getattr(extremes, name))
-    static = table[f"{quantity}_static_max"].unstack()
-    assert_array_equal(static, np.broadcast_to(extremes.static_max, static.shape))
+    for name in ("static_max", "static_min"):
+        static = table[f"{quantity}_{name}"].unstack()
+        assert_array_equal(static, np.broadcast_to(getattr(extremes, name), static.shape))
     if factor is not None:
         assert_array_equal(table[f"impact_factor_{factor}"].unstack(), found.impact_factors[factor])
+
+
+def test_kinds_with_fewer_axles_that_leave_the_road() -> None:
+    found = sw.ensemble(
+        BRIDGE,
+        [TRUCK, sw.vehicles.quarter_car()],
+        samples=4,
+        speed=25.0,
+        kind=[0, 1, 0, 1],
+        modes=3,
+        damping=0.02,
+        road=sw.Step(3.0, -0.1),
+    )
+    table, loads = found.to_pandas(), found.envelope("axle_loads")
+    assert np.isnan(loads.max[:, 1]).tolist() == [False, True, False, True]
+    assert_array_equal(table["axle_loads_max"], [*map(max, [loads.max[0], loads.max[1, :1]] * 2)])
+    off = found.off_road
+    assert (off.count[:, 0] > 0).any()
+    assert_array_equal(table["lift_offs_1"], off.count[:, 0])
+    assert_array_equal(table["time_off_road_1"], off.total[:, 0])
+    assert_array_equal(table["body_acceleration_max_1"], found.body_accelerations.max[:, 0])
+    # Down goes most of the bridge, in the middle of the longer span.
+    at = int(np.argmax(np.median(found.envelope("deflection").static_max, axis=0)))
+    assert table.attrs["governing"]["deflection"] == found.sections[at] > 0.0
+    assert_array_equal(table["impact_factor_deflection"], found.impact_factors.deflection[:, at])
+    axles = found.to_pandas("axle").index.get_level_values("axle")
+    assert pd.api.types.is_integer_dtype(axles)
 
 
 def test_places_that_are_not_there() -> None:
@@ -332,13 +444,15 @@ def test_places_that_are_not_there() -> None:
 
 
 @pytest.mark.parametrize("by", ["sample", "section"])
-def test_tables_in_files(by: Any, tmp_path: Path) -> None:
+def test_tables_in_files(by: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("spanwise._frames.ROWS", 5)
     found = whole("varied")
     table = found.to_pandas(by)
     found.to_parquet(tmp_path / "out.parquet", by)
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "out.parquet"), table)
     found.to_csv(tmp_path / "out.csv", by)
     index = "sample" if by == "sample" else ["sample", "section"]
+    assert len((tmp_path / "out.csv").read_text().split("\n")) == 1 + len(table) + 1
     again = pd.read_csv(tmp_path / "out.csv", index_col=index)
     pd.testing.assert_frame_equal(again, table, check_exact=True, check_index_type=False)
     assert {path.name for path in tmp_path.iterdir()} == {"out.parquet", "out.csv"}

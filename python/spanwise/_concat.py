@@ -52,7 +52,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     >>> import spanwise as sw
     >>> whole = sw.concat(map(sw.Ensemble.read, folder.glob("part*.npz")))  # doctest: +SKIP
     """
-    if isinstance(ensembles, Ensemble) or not is_list(ensembles):
+    if not is_list(ensembles):
         raise TypeError(f"ensembles = {shown(ensembles)}: must be a list of Ensemble")
     given = items("ensembles", ensembles, "a list of Ensemble")
     for i, each in enumerate(given):
@@ -60,7 +60,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
             raise TypeError(f"ensembles[{i}] = {shown(each)}: must be an Ensemble")
     if not given:
         raise ValueError("ensembles = []: must be one or more")
-    order = sorted(range(len(given)), key=lambda i: (given[i].first, given[i].samples))
+    order = sorted(range(len(given)), key=lambda i: given[i].first)
     for before, i in pairwise(order):
         _check_alike(given[order[0]], order[0], given[i], i)
         _check_next(given[before], before, given[i], i)
@@ -118,14 +118,7 @@ def _joined(recipes: Sequence[Recipe]) -> Recipe:
     first = recipes[0]
     counts = [each.samples for each in recipes]
     speeds = _speeds([each.speeds for each in recipes], counts)
-    kinds = first.kinds
-    if any(len(each.kinds) for each in recipes):
-        kinds = np.concatenate(
-            [
-                np.broadcast_to(each.kinds if len(each.kinds) else np.uint32(0), each.samples)
-                for each in recipes
-            ]
-        )
+    kinds = np.concatenate([each.kinds for each in recipes])
     factors = [
         Factors(each.name, _column([recipe.factors[k].values for recipe in recipes], counts))
         for k, each in enumerate(first.factors)
@@ -135,17 +128,16 @@ def _joined(recipes: Sequence[Recipe]) -> Recipe:
         "samples": samples,
         "first": first.first,
         "speed": speeds.given,
-        "kind": kinds if len(first.events) > 1 else None,
-        "factors": {each.name: each.plain for each in factors} or None,
+        "kind": kinds,
+        "factors": {each.name: each.plain for each in factors},
     }
-    settings = {key: by_sample.get(key, value) for key, value in first.settings.items()}
     return replace(
         first,
         samples=samples,
         kinds=kinds,
         speeds=speeds,
         factors=factors,
-        settings={key: value for key, value in settings.items() if value is not None},
+        settings={key: by_sample.get(key, value) for key, value in first.settings.items()},
     )
 
 
@@ -167,7 +159,7 @@ def _width(speeds: Speeds, samples: int) -> int:
 
 def _column(parts: Sequence[Array], counts: Sequence[int]) -> Array:
     """Rows of all samples; one row where it is the same for all."""
-    if all(len(each) == 1 and same(each, parts[0]) for each in parts) and sum(counts) != 1:
+    if all(len(each) == 1 and same(each, parts[0]) for each in parts):
         return parts[0]
     width = max(each.shape[1] for each in parts)
     rows = [np.broadcast_to(each, (n, width)) for each, n in zip(parts, counts, strict=True)]

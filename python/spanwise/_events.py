@@ -107,7 +107,7 @@ def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[
     if len(wrong) > 0:
         i = int(wrong[0])
         raise ValueError(f"kind[{i}] = {kinds[i]}: must be from 0 to {len(events) - 1}")
-    return kinds.astype(np.uint32)
+    return kinds.astype(np.uint32) if len(events) > 1 else np.zeros(0, dtype=np.uint32)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
