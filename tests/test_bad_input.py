@@ -508,7 +508,18 @@ def test_numpy_is_welcome() -> None:
     )
 
 
+def test_numbers_that_are_not_there() -> None:
+    road = sw.ISO8608("A")
+    with pytest.raises(ValueError, match=r"x = .*: must have no masked values"):
+        road.elevation(np.ma.array([1.0, 2.0], mask=[True, False]))
+    # Infinite where long doubles are doubles.
+    with pytest.raises(ValueError, match=r"x\[1\] = .*: (is too large|must be finite)"):
+        road.elevation(np.array(["1.0", "1e4000"], dtype=np.longdouble))
+
+
 def test_wrong_objects() -> None:
+    with pytest.raises(TypeError, match=r"path = 1\.5: must be a path"):
+        sw.Ensemble.read(1.5)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="bridge = 1: must be a Bridge"):
         sw.cross(1, vehicle(), speed=20.0)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"vehicle = None: must be a Vehicle"):

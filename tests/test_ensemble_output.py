@@ -15,6 +15,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
+from spanwise._ensemblefile import as_dict
 from spanwise.cli import main
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
@@ -95,6 +96,10 @@ def test_archive(found: sw.Ensemble, tmp_path: Path) -> None:
     path = tmp_path / "found.npz"
     found.to_npz(path)
     with np.load(path) as archive:
+        for name in ("sections", "supports", "frequencies"):
+            assert_array_equal(archive[name], getattr(found, name))
+        assert_array_equal(archive["lift_offs"], found.off_road.count)
+        assert f"damping {archive['damping']}" in found.summary()
         assert_array_equal(archive["moment_max"], found.envelope("moment").max)
         assert_array_equal(archive["shear_left_min_time"], found.envelope("shear_left").min_time)
         assert_array_equal(
@@ -106,6 +111,54 @@ def test_archive(found: sw.Ensemble, tmp_path: Path) -> None:
     assert settings["ensemble"]["samples"] == 200
     with pytest.raises(OSError, match="no such folder"):
         found.to_npz(tmp_path / "missing" / "found.npz")
+
+
+@pytest.mark.filterwarnings("ignore::spanwise.PlausibilityWarning")
+def test_plain_values() -> None:
+    """Of two kinds, of which one has one axle, and of a sample that fails."""
+    kind = np.arange(20) % 2
+    found = sw.ensemble(
+        BRIDGE,
+        [TRUCK, sw.vehicles.quarter_car()],
+        samples=20,
+        first=7,
+        speed=np.linspace(15.0, 30.0, 20),
+        kind=kind,
+        factors={"body_mass": np.where(np.arange(20) == 3, 1e305, 1.0)},
+        damping=0.02,
+        modes=3,
+    )
+    told = as_dict(found)
+    assert [each["sample"] for each in told["failures"]] == [10]
+    sound = np.arange(20) != 3
+    percentiles = (1, 5, 25, 50, 75, 95, 99)
+    assert told["percentiles"] == [*percentiles]
+    for name in ("deflection", "moment", "shear", "reactions"):
+        for side in ("max", "min"):
+            values = getattr(found.envelope(name), side)[sound]
+            expected = np.percentile(values, percentiles, axis=0)
+            assert_array_equal(told["extremes"][name][side], expected)
+    loads = np.array(told["extremes"]["axle_loads"]["max"])
+    front, rear = found.envelope("axle_loads").max.T
+    assert_array_equal(loads[:, 0], np.percentile(front[sound], percentiles))
+    assert_array_equal(loads[:, 1], np.percentile(rear[kind == 0], percentiles))
+    at = found.sections.tolist().index(9.144)
+    factors = np.array(told["impact_factors"]["sagging"])
+    expected = np.percentile(found.impact_factors.sagging[sound, at], percentiles)
+    assert_array_equal(factors[:, at], expected)
+    tails = found.tail[sound]
+    assert told["tail"] == {
+        "shortest": tails.min(),
+        "longest": tails.max(),
+        "samples_that_can_grow": 0,
+    }
+    assert tails.min() < tails.max()
+    assert told["elapsed"] == found.elapsed > 0.0
+    failed = as_dict(
+        sw.ensemble(BRIDGE, TRUCK, samples=1, speed=20.0, factors={"body_mass": [1e305]})
+    )
+    assert (failed["extremes"], failed["impact_factors"]) == ({}, {})
+    assert failed["tail"]["longest"] is None
 
 
 @pytest.mark.parametrize("quantity", ["deflection", "sagging", "hogging", "shear", "reactions"])

@@ -18,6 +18,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import spanwise as sw
+from spanwise.roads.roughness import fitted
 
 nan, inf = float("nan"), float("inf")
 
@@ -154,6 +155,10 @@ def test_classes_are_those_of_the_standard() -> None:
         assert_array_equal(found.G, mean)
         assert found.upper == (inf if letter == "H" else pytest.approx(2 * mean, rel=EXACT))
         assert found.lower == (0.0 if letter == "A" else pytest.approx(mean / 2, rel=EXACT))
+        if letter != "H":
+            # The upper limit belongs to the class.
+            assert sw.roads.classify(found.upper).letter == letter
+            assert sw.roads.classify(np.nextafter(found.upper, inf)).lower == found.upper
     assert sw.roads.classify(33e-6).letter == "B"
     assert sw.roads.classify(1.0).letter == "H"
 
@@ -176,6 +181,23 @@ def test_density_of_waves() -> None:
     # The line that is taken off each segment is in the first two.
     assert density[~near][2:].sum() < 1e-5 * density.sum()
     assert n[np.argmax(density)] == pytest.approx(0.5)
+
+
+def test_segments_overlap_by_half() -> None:
+    # The bump is at the end of the first and third, where their windows are 0.
+    road = sw.Bump(49.5, 1.0, 0.1)
+    x = np.arange(49.0, 51.0, 1e-3)
+    n, density = road.psd(0.0, 100.0, segment=50.0)
+    square = np.sum(road.surface.elevation(x) ** 2) * 1e-3
+    assert density.sum() * n[0] == pytest.approx(square / 50.0 / (3 / 8) / 3, rel=0.05)
+    assert n[-1] == pytest.approx(8.0)  # known exactly
+    # Wherever it is counted from.
+    x = np.arange(0.0, 100.0, 0.25)
+    z = sw.ISO8608("B").elevation(x)
+    here, there = (sw.Profile(x + at, z).psd(at, at + 99.0) for at in (0.0, 32.0))
+    assert_allclose(here, there, rtol=1e-6)
+    with pytest.raises(ValueError, match=r"segment = 101 m: must be .* to 100 m, the section"):
+        road.psd(0.0, 100.0, segment=101.0)
 
 
 def test_the_window_does_not_change_the_variance() -> None:
@@ -216,6 +238,7 @@ def test_no_wave_is_taken_for_a_longer_one(wavelength: float, spacing: float) ->
     road = sw.Profile(x, 1e-3 * np.sin(2 * np.pi * x / wavelength))
     assert road.iri(0.0, 99.9) < 0.1
     n, density = road.psd(0.0, 99.9)
+    assert n[-1] == pytest.approx(0.4 / spacing, abs=n[0])
     assert n[np.argmax(density)] == pytest.approx(1.0 / wavelength, abs=2 * n[0])
     near = np.abs(n * wavelength - 1.0) < 0.05
     assert density[near].sum() * n[0] == pytest.approx(1e-3**2 / 2, rel=0.02)
@@ -278,6 +301,7 @@ def test_the_class_hardly_depends_on_the_ends(spacing: float) -> None:
     x = np.arange(0.0, 500.0, 0.25)
     low, high = (sw.Profile(x, road.elevation(x) + c) for c in (0.0, 500.0 + 0.03 * x))
     assert pytest.approx(low.iso_class(0.0, 499.0).G, rel=1e-3) == high.iso_class(0.0, 499.0).G
+    assert_allclose(high.psd(0.0, 499.0), low.psd(0.0, 499.0), rtol=1e-3)
     assert high.iri(0.0, 499.0) == pytest.approx(low.iri(0.0, 499.0), rel=1e-2)
 
 
@@ -293,6 +317,26 @@ def test_the_standard_error_of_a_class() -> None:
     assert other.error is not None
     assert other.error > 0.3
     assert (sw.roads.classify(1e-4).error, sw.roads.classify(1e-4).band) == (None, None)
+
+
+@pytest.mark.parametrize(("known", "band", "end"), [(2.0, 0.9, 0.9), (0.9, 2.83, 0.905)])
+def test_octaves_all_alike_and_a_part_by_its_width(known: float, band: float, end: float) -> None:
+    n = np.arange(1, round(100 * known) + 1) / 100
+    level = 64e-6 * np.select([n < 0.2, n < 0.4, n < 0.8], [1.0, 4.0, 16.0], 100.0)
+    found = fitted(n, level * (n / 0.1) ** -2, (0.1, band))
+    # The last wave number stands for the width around it.
+    width = np.log2(end / 0.8)
+    mean = (np.log(4.0) + np.log(16.0) + width * np.log(100.0)) / (3.0 + width)
+    assert pytest.approx(64e-6 * np.exp(mean), rel=EXACT) == found.G
+    squares = (np.log([1.0, 4.0, 16.0, 100.0]) - mean) ** 2
+    scatter = (squares[:3].sum() + width * squares[3]) / (3.0 + width)
+    octaves = (3.0 + width) ** 2 / (3.0 + width**2)
+    assert found.error == pytest.approx(np.sqrt(scatter / (octaves - 1.0)), rel=EXACT)
+    assert found.band == (0.1, 0.9)
+    # Without the first two waves of a segment, which the window and the removed line distort.
+    assert fitted(n, (n / 0.1) ** -2, (0.01, 0.85)).band == (0.03, 0.85)
+    with pytest.raises(ValueError, match=r"band = \(0\.1, 0\.39\): must span two octaves"):
+        fitted(n, level, (0.1, 0.39))
 
 
 @pytest.mark.parametrize(
@@ -334,7 +378,7 @@ def test_points_that_hold_an_index(spacing: float) -> None:
     assert on_points(spacing).iri(0.0, 544.0) == pytest.approx(4.36, rel=0.03)
 
 
-@pytest.mark.parametrize(("spacing", "expected"), [(0.5, 4.07), (1.0, 3.24)])
+@pytest.mark.parametrize(("spacing", "expected"), [(0.5, 4.07), (1.0, 3.24), (1.2, 2.93)])
 def test_an_index_of_coarse_points_is_doubted(spacing: float, expected: float) -> None:
     road = on_points(spacing)
     said = rf"road: its points are {spacing:g} m apart"
@@ -365,9 +409,16 @@ def test_index_by_segments() -> None:
     assert_array_equal(found.ends, [40.0, 60.0, 80.0, 100.0, 120.0, 130.0])
     assert found.lead_in == 50.0
     assert len(found) == len(found.values) == 6
-    assert repr(found).startswith("IriSegments(6 from 20 m to 130 m, ")
-    assert str(found).splitlines()[0] == " start [m]     end [m]   IRI [m/km]"
-    assert list(found.to_pandas().columns) == ["start [m]", "end [m]", "IRI [m/km]"]
+    said = "IriSegments(6 from 20 m to 130 m, 3.28 to 6.1 m/km, mean 4.35, lead-in 50 m)"
+    assert repr(found) == said
+    head, first, *_ = str(found).splitlines()
+    assert head == " start [m]     end [m]   IRI [m/km]"
+    assert first == "     20.00       40.00         4.35"
+    table = found.to_pandas()
+    assert list(table.columns) == ["start [m]", "end [m]", "IRI [m/km]"]
+    assert_array_equal(table, np.transpose([found.starts, found.ends, found.values]))
+    with pytest.raises(ValueError, match="read-only"):
+        found.values[0] = 0.0
     # One drive: the segment is that of a longer section, whose car has settled by then.
     longer = road.iri(-40.0, 130.0, every=20.0)
     assert_allclose(longer.values[3:], found.values, rtol=0.01)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import spanwise as sw
+from spanwise._freevibration import SIDES as EXTREMES
+from spanwise._freevibration import Growth, Side, growth_in_words, growths
 from spanwise._recipe import Quantity
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.9415e9, mass=6037.6, stations_per_span=3)
@@ -71,6 +74,53 @@ def test_a_record_that_ends_too_early_says_so() -> None:
     assert {"quantity", "side", "x", "recorded", "reach"} == set(told["can_grow"][0])
 
 
+@pytest.mark.parametrize(
+    ("reach", "told"),
+    [
+        ([10.19, 2.11], []),
+        ([10.21, 2.11], [("max", 0.0, 10.0, 10.21)]),
+        ([10.19, 2.13], [("max", 5.0, 2.0, 2.13), ("min", 5.0, -2.0, -2.13)]),
+        ([101.11, 2.13], [("max", 0.0, 10.0, 101.11), ("min", 0.0, -100.0, -101.11)]),
+    ],
+)
+def test_what_is_worth_a_word(
+    reach: list[float], told: list[tuple[str, float, float, float]]
+) -> None:
+    """What can grow by 1 % of itself and 0.1 % of the largest of its kind, 100 N down here."""
+    envelope = SimpleNamespace(
+        x=np.array([0.0, 5.0]),
+        max=SimpleNamespace(value=np.array([10.0, 2.0])),
+        min=SimpleNamespace(value=np.array([-100.0, -2.0])),
+    )
+    core = SimpleNamespace(reach=lambda each: np.array(reach) if each == "shear" else None)
+    run: Any = SimpleNamespace(_core=core, envelope=lambda _: envelope)
+    found = [(each.side, each.x, each.recorded, each.reach) for each in growths(run)]
+    assert found == told
+
+
+#: What grows to 2 from -1 [m, N m or N], in words.
+TOLD: dict[tuple[Quantity, Side], tuple[str, str]] = {
+    ("deflection", "max"): ("deflection, down: 2000.000 mm", "-1000.000"),
+    ("deflection", "min"): ("deflection, up: 2000.000 mm", "-1000.000"),
+    ("moment", "max"): ("moment, sagging: 0.002 kN m", "-0.001"),
+    ("moment", "min"): ("moment, hogging: 0.002 kN m", "-0.001"),
+    ("shear", "max"): ("shear, positive: 0.002 kN", "-0.001"),
+    ("shear", "min"): ("shear, negative: 0.002 kN", "-0.001"),
+    ("reactions", "max"): ("reaction, up: 0.002 kN", "-0.001"),
+    ("reactions", "min"): ("reaction, uplift: 0.002 kN", "-0.001"),
+    ("clamp_moments", "max"): ("clamp moment, positive: 0.002 kN m", "-0.001"),
+    ("clamp_moments", "min"): ("clamp moment, negative: 0.002 kN m", "-0.001"),
+}
+
+
+def test_what_can_grow_in_words() -> None:
+    assert [*EXTREMES] == [*TOLD]
+    for (quantity, side), (reach, recorded) in TOLD.items():
+        at = f"{reach} at most, at x = 9.500 m, recorded there"
+        assert growth_in_words(Growth(quantity, side, 9.5, -1.0, 2.0)) == f"{at} {recorded}"
+        assert growth_in_words(Growth(quantity, side, 9.5, -0.0, 2.0)) == f"{at} 0.000"
+
+
 def test_above_the_critical_speed() -> None:
     run = sw.cross(SPAN, FORCE, speed=420.0, damping=0.02, sections=[12.5])
     none = sw.cross(SPAN, FORCE, speed=420.0, damping=0.02, sections=[12.5], tail=0.0)
@@ -107,7 +157,12 @@ def test_a_standing_vehicle() -> None:
     assert run.stopped[0] is not None
     assert not run.settled
     assert not run.can_grow
-    assert "ten periods" in run.summary()
+    assert "standing on the bridge, the longest kept: ten periods" in run.summary()
+
+
+def test_a_tail_that_is_given_is_told_as_given() -> None:
+    run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.02, tail=0.25)
+    assert "tail 0.25 s" in map(str.strip, run.summary().splitlines())
 
 
 @pytest.mark.parametrize("quantities", [None, ["moment"]])
