@@ -486,6 +486,7 @@ def test_points_cannot_be_changed() -> None:
     road = sw.Profile(x, 0.1 * X)
     x[3] = 1e3
     assert road == sw.Profile(X, 0.1 * X)
+    assert road != sw.Profile(X, 0.2 * X)
     with pytest.raises(ValueError, match="read-only"):
         road.x[3] = 1e3
     assert repr(road).startswith("Profile(321 points from -20 m to 60 m")
