@@ -697,7 +697,7 @@ ARRAYS: Final[dict[str, tuple[Callable[[Any], object], list[Any]]]] = {
         lambda v: sw.Bridge(spans=[18.0], EI=1e9, mass=1e3, point_masses=v).masses,
         [[3.0, 1000.0], [4.5, 500.0]],
     ),
-    "damping": (lambda v: sw.cross(B, Q, speed=20.0, modes=2, damping=v).moment, [0.25, 0.125]),
+    "damping": (lambda v: sw.cross(B, Q, speed=20.0, modes=2, damping=v).moment, [0.125, 0.0625]),
     "damping matrix": (
         lambda v: sw.cross(B, Q, speed=20.0, modes=2, damping=v).moment,
         (8.0 * np.eye(6)).tolist(),

@@ -643,3 +643,54 @@ def test_advice_names_what_the_place_has(
             said = str(refused)
     assert here in said
     assert "--" not in said
+
+
+#: Files with points that were not measured, what is given for these, and what is left of x.
+DROPPED: list[tuple[str, float, dict[str, Any], list[int]]] = [
+    (
+        "0,11\n1,-9999\n2,12\n3,13\n4,-9999.0\n5,14\n",
+        -9999.0,
+        {"scale": (1.0, 1e-3)},
+        [0, 2, 3, 5],
+    ),
+    ("0,11\n1,nan\n2,12\n3,\n4,13\n5,14\n", float("nan"), {}, [0, 2, 4, 5]),
+    ("0,1,1\n1,1,-99\n2,-99,1\n3,2,2\n4,1,2\n5,2,1\n", -99.0, {"columns": (0, 1, 2)}, [0, 3, 4, 5]),
+    ("0.11\n-1\n0.12\n0.13\n-1\n0.14\n", -1.0, {"spacing": 1.0}, [0, 2, 3, 5]),
+]
+
+
+@pytest.mark.parametrize(("text", "code", "given", "kept"), DROPPED, ids=range(4))
+def test_points_that_were_not_measured_are_left_out(
+    text: str, code: float, given: dict[str, Any], kept: list[int], tmp_path: Path
+) -> None:
+    file = tmp_path / "road.csv"
+    file.write_text(text)
+    road = sw.Profile.read(file, missing=code, max_gap=5.0, **given)
+    assert road.x.tolist() == kept
+    assert road.elevations.min() > 0.0
+    table = {"kind": "profile", "file": str(file), "missing": code, "max_gap": 5.0}
+    assert sw.roads.from_table(table | given) == road
+
+
+def test_what_was_not_measured_is_refused_or_doubted_with_the_remedy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "road.csv"
+    points = [[0.1 * k, 0.001 * (k % 30)] for k in range(300)]
+    for cell, says in (("", "column 1 is blank"), ("nan", "must be a finite number")):
+        lines = [f"{x:g},{cell if 9 <= k < 12 else z}" for k, (x, z) in enumerate(points)]
+        file.write_text("\n".join(lines))
+        refused = rf"line 10: .*{says}; missing = nan leaves such points out$"
+        with pytest.raises(ValueError, match=refused):
+            sw.Profile.read(file)
+        assert main(["road", str(file)]) == 2
+        assert capsys.readouterr().err.endswith("; --missing nan leaves such points out\n")
+        assert main(["road", str(file), "--missing", "nan"]) == 0
+        capsys.readouterr()
+    file.write_text(rows([x for x, _ in points], [z for _, z in points]).replace("0.02\n", "-99\n"))
+    with pytest.warns(sw.PlausibilityWarning, match=r"as 9 other points.*missing does so"):
+        sw.Profile.read(file)
+    assert main(["road", str(file), "--missing", "-99"]) == 0
+    assert capsys.readouterr().err == ""
+    assert main(["road", str(file), "--missing", "-1"]) == 0
+    assert "--missing does so" in " ".join(capsys.readouterr().out.split())

@@ -34,6 +34,7 @@ READING: Final = {
     "delimiter": "--delimiter",
     "decimal": "--decimal",
     "scale": "--scale",
+    "missing": "--missing",
     "sort": "--sort",
     "duplicates": "--duplicates",
     "max_gap": "--max-gap",
@@ -95,6 +96,13 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         metavar=("X", "Z"),
         help="what x and elevation are multiplied by to give metres: 1 0.001 for mm; without, by "
         "the units that the file names",
+    )
+    profile.add_argument(
+        "--missing",
+        type=float,
+        metavar="Z",
+        help="leave out points with this elevation, as the file writes it: -9999, or nan for "
+        "blank cells",
     )
     profile.add_argument(
         "--sort", action="store_const", const=True, help="bring the points into the order of x"

@@ -162,7 +162,7 @@ def ensemble(
     Vehicles that cross alone, at constant speed and from the left, take equal steps in space, so
     that all samples of a kind share where axles stand and what they do to the bridge, whatever
     their speed, road, masses and springs; they march side by side. All others are crossings of
-    their own, which takes about ten times as long for each.
+    their own, which takes 15 to 20 times as long for each.
 
     There may be as many kinds of event as samples: memory is taken for the results and, on each
     thread, for one kind at a time. A kind of a few samples takes about as long for each as `cross`.

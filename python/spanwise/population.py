@@ -90,7 +90,7 @@ class Ensemble:
         All that was warned of in these crossings and their measured roads, but damping.
     shares_geometry : bool
         Whether the samples were marched side by side; if not, each was a crossing of its own, which
-        takes about ten times as long.
+        takes 15 to 20 times as long.
     """
 
     def __init__(self, recipe: Recipe, rows: Rows) -> None:

@@ -8,7 +8,8 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise.roads._options import given
+from spanwise._shown import many
+from spanwise.roads._options import called, given
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -62,9 +63,12 @@ def doubts(x: Array, elevations: Array) -> Iterator[str]:
     dropped = _dropped(x, elevations)
     if dropped is not None:
         point, off = dropped
+        others = int((elevations == elevations[point]).sum()) - 1
+        also = f", as {many(others, 'other point')} of that value may be" if others else ""
         yield (
             f"elevations[{point}] = {elevations[point]:g}: is {off:.3g} m off the points beside "
-            "it; is it a drop-out, or stands for a missing value? Leave such points out"
+            f"it{also}; is it a drop-out, or stands for a missing value? Leave such points out; of "
+            f"a file {called('missing')} does so, given their value as it is written there"
         )
         return
     slope = _slope(x, elevations)

@@ -27,10 +27,11 @@ def called(argument: str) -> str:
     return _OPTIONS.get().get(argument, argument)
 
 
-def given(argument: str, value: str | list[float]) -> str:
+def given(argument: str, value: str | float | list[float]) -> str:
     """An argument with a value, as it is to be written; in Python and in a case file alike."""
     option = _OPTIONS.get().get(argument)
     if option is None:
         return f"{argument} = {value!r}"
-    words = [value] if isinstance(value, str) else [f"{each:g}" for each in value]
+    values = value if isinstance(value, list) else [value]
+    words = [each if isinstance(each, str) else f"{each:g}" for each in values]
     return shlex.join([option, *words])

@@ -19,7 +19,7 @@ from spanwise._renamed import renamed
 from spanwise.roads._doubts import doubts
 from spanwise.roads._options import called, given
 from spanwise.roads.base import CONTACT_PATCH, Road
-from spanwise.roads.reading import read_points
+from spanwise.roads.reading import NAN, read_points
 from spanwise.roads.roughness import HELD
 from spanwise.roads.sheet import Column
 
@@ -135,6 +135,7 @@ class Profile(Road):
         delimiter: str | None = None,
         decimal: Literal[".", ","] | None = None,
         scale: tuple[float, float] | None = None,
+        missing: float | None = None,
         sort: bool = False,
         duplicates: Literal["refuse", "mean", "first", "last"] = "refuse",
         detrend: bool = False,
@@ -159,7 +160,9 @@ class Profile(Road):
             Distance of the points [m], where no column has x.
         start : float, optional
             x of the first point [m], for a file that counts from elsewhere than the left end of
-            the bridge; without, as the file has it, or 0 beside `spacing`.
+            the bridge: the first station less the station of that end, -180 for a file from
+            1000 m on where the bridge begins at 1180 m. Without, as the file has it, or 0 beside
+            `spacing`.
         delimiter : str, optional
             What separates the columns; a blank stands for any number of blanks. Without, what
             the file suggests.
@@ -171,6 +174,10 @@ class Profile(Road):
             elevations in millimetres. Without, by the units that the file names: those of an ERD
             file, a line of units, or units with the names, as in ``z [mm]``, ``z (mm)``,
             ``z / mm``, ``z in mm``, ``z_mm``, and ``x m  z mm`` between blanks.
+        missing : float, optional
+            The elevation, as the file writes it and before `scale`, that stands for a point that
+            was not measured, such as -9999; ``nan`` for cells that are blank or NaN. Such points
+            are left out, and the road goes on between their neighbours, `max_gap` apart at most.
         sort : bool, optional
             Whether to bring the points into the order of x. Where x falls from point to point,
             that is done anyway.
@@ -200,7 +207,9 @@ class Profile(Road):
         offset = None if start is None else finite(called("start"), start)
         is_sorted = flag(called("sort"), sort)
         path = file_path("path", path)
-        x, elevations, lines = read_points(path, columns, spacing, delimiter, decimal, scale)
+        x, elevations, lines = read_points(
+            path, columns, spacing, delimiter, decimal, scale, missing
+        )
         steps = np.diff(x)
         if is_sorted or (np.all(steps <= 0.0) and np.any(steps < 0.0)):
             order = np.argsort(x, kind="stable")
@@ -212,7 +221,7 @@ class Profile(Road):
         try:
             return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
         except ValueError as error:
-            raise ValueError(_in_file(str(error), path, x, lines)) from None
+            raise ValueError(_in_file(str(error), path, x, elevations, lines)) from None
 
     @classmethod
     def read_csv(cls, path: str | Path, **options: Any) -> Profile:
@@ -263,7 +272,7 @@ def _merged(x: Array, elevations: Array, lines: Array, kept: str) -> tuple[Array
     return x[one], elevations[one], lines[one]
 
 
-def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
+def _in_file(message: str, path: Path, x: Array, elevations: Array, lines: Array) -> str:
     """What is wrong with a profile, with the line of the file and what may mend it."""
     message = message.replace("max_gap", called("max_gap"))
     found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
@@ -273,6 +282,8 @@ def _in_file(message: str, path: Path, x: Array, lines: Array) -> str:
         return f"{path}: {message}"
     point = int(found[2])
     where = f"{path}, line {lines[point]:.0f}: {message}"
+    if found[1] == "elevations" and np.isnan(elevations[point]):
+        return f"{where}; {given('missing', NAN)} leaves such points out"
     if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
         takes = "takes the mean there, 'first' or 'last' one elevation"
         return f"{where}; {given('duplicates', 'mean')} {takes}"

@@ -13,10 +13,10 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import items, numbers, positive, shown, text
+from spanwise._checks import items, number, numbers, positive, shown, text
 from spanwise._keys import suggestion
 from spanwise.roads import erd
-from spanwise.roads._options import called
+from spanwise.roads._options import called, given
 from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of, without_unit
 from spanwise.roads.sniffing import encoding_of, is_number, value_of
 
@@ -28,12 +28,21 @@ MAX_BYTES: Final = 2**27
 #: Lines that become numbers at a time.
 _BLOCK: Final = 100_000
 
+#: What stands for blank cells.
+NAN: Final = float("nan")
+
 #: Most columns that are averaged.
 MOST_COLUMNS: Final = 100
 
 
 def read_points(
-    path: Path, columns: object, spacing: object, delimiter: object, decimal: object, scale: object
+    path: Path,
+    columns: object,
+    spacing: object,
+    delimiter: object,
+    decimal: object,
+    scale: object,
+    missing: object,
 ) -> tuple[Array, Array, Array]:
     """x and elevation [m] of each point and the line it is on, as in the file; see `Profile.read`.
 
@@ -48,6 +57,7 @@ def read_points(
     wanted = _columns(columns)
     factors = None if scale is None else _factors(scale)
     mark = None if delimiter is None else _delimiter(delimiter)
+    gone = None if missing is None else number(called("missing"), missing)
     point = None if decimal is None else text(called("decimal"), decimal)
     if point not in (None, ".", ","):
         raise ValueError(f"{called('decimal')} = {shown(decimal)}: must be . or ,")
@@ -59,15 +69,15 @@ def read_points(
             return io.TextIOWrapper(io.BytesIO(content), encoding=encoding, newline="")
 
         if next(lines(), "").startswith(erd.MARK):
-            for key, given in (("spacing", spacing), ("delimiter", mark), ("decimal", point)):
-                if given is not None:
-                    raise ValueError(f"{called(key)} = {shown(given)}: not used with ERD files")
+            for key, value in (("spacing", spacing), ("delimiter", mark), ("decimal", point)):
+                if value is not None:
+                    raise ValueError(f"{called(key)} = {shown(value)}: not used with ERD files")
             sheet = erd_of(lines)
         else:
             _check_columns(wanted, has_x=step is None)
             sheet = table_of(lines, wanted or ((0, 1) if step is None else (0,)), mark, point)
             sheet.along = None if step is None else (0.0, step, "m")
-        return _points(sheet, wanted, factors)
+        return _points(sheet, wanted, factors, gone)
     except (csv.Error, UnicodeError) as error:
         raise ValueError(f"{path}: not a file of separated values: {error}") from None
     except ValueError as error:
@@ -89,7 +99,10 @@ def _content(path: Path) -> bytes:
 
 
 def _points(
-    sheet: Sheet, wanted: tuple[Column, ...] | None, factors: tuple[float, float] | None
+    sheet: Sheet,
+    wanted: tuple[Column, ...] | None,
+    factors: tuple[float, float] | None,
+    missing: float | None,
 ) -> tuple[Array, Array, Array]:
     first = next(sheet.rows, None)
     if first is None:
@@ -97,16 +110,20 @@ def _points(
             raise ValueError("no numbers after END; save the data of an ERD file as text")
         return np.empty(0), np.empty(0), np.empty(0)
     places = _places(sheet, first, wanted)
+    heights = places if sheet.along is not None else places[1:]
     found: list[Array] = [np.empty(0)] * len(places)
     lines: Array = np.empty(0)
     rows = chain([first], sheet.rows)
     while block := list(islice(rows, _BLOCK)):
-        columns = _columns_of(block, places, sheet.decimal)
+        columns = _columns_of(block, places, sheet.decimal, heights, missing)
         found = [np.append(column, each) for column, each in zip(found, columns, strict=True)]
-        numbers = np.array([line for line, _ in block], dtype=np.float64)
-        lines = np.append(lines, numbers)
+        lines = np.append(lines, np.array([line for line, _ in block], dtype=np.float64))
     if 0 < sheet.expected != len(lines):
         raise ValueError(f"has {len(lines)} samples, and its header says {sheet.expected}")
+    kept = np.full(len(lines), True)
+    if missing is not None:
+        for track in found[-len(heights) :]:
+            kept &= ~np.isnan(track) if np.isnan(missing) else track != missing
     if factors is None:
         found = [sheet.metres(place) * each for place, each in zip(places, found, strict=True)]
     way = 1.0
@@ -119,11 +136,17 @@ def _points(
     if factors is not None:
         way, height = factors
         tracks = [height * track for track in tracks]
-    return way * x, sum(tracks[1:], tracks[0]) / len(tracks), lines
+    elevations = sum(tracks[1:], tracks[0]) / len(tracks)
+    return way * x[kept], elevations[kept], lines[kept]
 
 
-def _columns_of(block: list[Row], places: list[int], decimal: str) -> list[Array]:
-    """Columns of numbers; those that NumPy reads all at once, others one by one."""
+def _columns_of(
+    block: list[Row], places: list[int], decimal: str, heights: list[int], missing: float | None
+) -> list[Array]:
+    """Columns of numbers; those that NumPy reads all at once, others one by one.
+
+    Blank elevations are NaN, if these are missing.
+    """
     try:
         texts = [[cells[place] for _, cells in block] for place in places]
         if any("_" in "".join(column) for column in texts):
@@ -135,7 +158,7 @@ def _columns_of(block: list[Row], places: list[int], decimal: str) -> list[Array
         return [np.array(column, dtype=np.float64) for column in texts]
     except (ValueError, IndexError):
         return [
-            np.array([_number(cells, place, line, decimal) for line, cells in block])
+            np.array([_number(row, place, decimal, place in heights, missing) for row in block])
             for place in places
         ]
 
@@ -185,7 +208,8 @@ def _place_of(column: str, names: list[str]) -> int | None:
     return found[0] if len(found) == 1 else None
 
 
-def _number(cells: list[str], column: int, line: int, decimal: str) -> float:
+def _number(row: Row, column: int, decimal: str, is_height: bool, missing: float | None) -> float:
+    line, cells = row
     if column >= len(cells):
         other = next((each for each in (";", "\t", "|", " ") if each in cells[0]), None)
         hint = "" if other is None else f"; is the delimiter {other!r}?"
@@ -193,6 +217,11 @@ def _number(cells: list[str], column: int, line: int, decimal: str) -> float:
             f"line {line}: {len(cells)} columns, column {column} (from 0) is missing{hint}"
         )
     cell = cells[column]
+    if is_height and cell == "":
+        if missing is not None and np.isnan(missing):
+            return missing
+        leaves = f"{given('missing', NAN)} leaves such points out"
+        raise ValueError(f"line {line}: column {column} is blank; {leaves}")
     value = value_of(cell, decimal)
     if value is None:
         hint = ""
@@ -209,13 +238,13 @@ def _columns(columns: object) -> tuple[Column, ...] | None:
     if columns is None:
         return None
     several = [columns] if isinstance(columns, str | int | np.integer) else columns
-    given = items(called("columns"), several, "names or numbers of columns")
-    if not 1 <= len(given) <= MOST_COLUMNS:
+    asked = items(called("columns"), several, "names or numbers of columns")
+    if not 1 <= len(asked) <= MOST_COLUMNS:
         raise ValueError(
             f"{called('columns')} = {shown(columns)}: must be 1 to {MOST_COLUMNS} columns"
         )
     found: list[Any] = []
-    for k, each in enumerate(given):
+    for k, each in enumerate(asked):
         is_place = isinstance(each, int | np.integer) and not isinstance(each, bool) and each >= 0
         if not (is_place or isinstance(each, str)):
             allowed = "must be a column's name or its number from 0"
