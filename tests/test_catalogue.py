@@ -6,6 +6,7 @@ Each number is transcribed to the digits printed, and must agree within half a u
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -250,3 +251,35 @@ def test_one_in_detail(name: str, capsys: pytest.CaptureFixture[str]) -> None:
 def test_an_unknown_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["vehicles", "hs21"]) == 2
     assert "preset = 'hs21': must be one of kishan-1973, " in capsys.readouterr().err
+
+
+BRIDGE_20 = sw.Bridge(spans=[20.0], EI=4e9, mass=9e3)
+TRUCK = sw.vehicles.half_car()
+
+#: Called with what they do not take.
+CROSS: Any = sw.cross
+ENSEMBLE: Any = sw.ensemble
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda: detail("hs20-45"), r"\(did you mean 'hs20-44'\?\)$"),
+        (lambda: CROSS(BRIDGE_20, "half-car"), r"; sw\.vehicles\.half_car\(\) makes one$"),
+        (lambda: CROSS(BRIDGE_20, "flm4-3"), r"; sw\.vehicles\.flm4\(3\) makes one$"),
+        (
+            lambda: ENSEMBLE(BRIDGE_20, "half_car", samples=2, seed=1),
+            r"; sw\.vehicles\.half_car\(\) makes one$",
+        ),
+        (
+            lambda: ENSEMBLE(BRIDGE_20, ["t44"], samples=2, seed=1),
+            r"; sw\.vehicles\.t44\(\) makes one$",
+        ),
+        (lambda: CROSS(BRIDGE_20, [TRUCK, TRUCK]), r"; sw\.convoy makes passages of vehicles"),
+        (lambda: sw.ISO8608("very poor"), "; very poor is class E$"),
+        (lambda: sw.ISO8608("Average"), "; average is class C$"),
+    ],
+)
+def test_what_is_meant_is_named(ask: Any, says: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=says):
+        ask()

@@ -517,3 +517,10 @@ def test_without_matplotlib_the_error_names_the_extra(two_spans: Scene) -> None:
         two_spans.bridge.plot.model()
     with pytest.raises(ImportError, match=r"spanwise\[plot\]"):
         compare_impact_factors({"one": two_spans.run})
+
+
+def test_axle_loads_of_an_ensemble_are_not_along_the_bridge() -> None:
+    bridge = sw.Bridge(spans=[18.0], EI=2e9, mass=6000.0, stations_per_span=3)
+    many = sw.ensemble(bridge, truck(0.0), samples=2, speed=20.0, modes=2)
+    with pytest.raises(ValueError, match=r"not drawn along .*plot\.impact_factors\('axle_loads'\)"):
+        many.plot.envelope("axle_loads")  # type: ignore[arg-type]

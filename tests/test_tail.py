@@ -113,6 +113,15 @@ TOLD: dict[tuple[Quantity, Side], tuple[str, str]] = {
 }
 
 
+def test_the_representation_says_what_a_given_tail_cuts_off() -> None:
+    bridge = sw.Bridge(spans=[20.0], EI=4e9, mass=9e3)
+    given: dict[str, Any] = {"speed": 40.0, "modes": 2, "damping": 0.01}
+    cut = sw.cross(bridge, sw.vehicles.quarter_car(), tail=0.0, **given)
+    assert cut.can_grow
+    assert repr(cut).endswith(", tail 0 s after which extremes can grow)")
+    assert "tail" not in repr(sw.cross(bridge, sw.vehicles.quarter_car(), **given))
+
+
 def test_what_can_grow_in_words() -> None:
     assert [*EXTREMES] == [*TOLD]
     for (quantity, side), (reach, recorded) in TOLD.items():

@@ -14,7 +14,7 @@ from spanwise._checks import array, as_array, first_of, shown
 from spanwise._traffictable import is_random
 from spanwise._value import Value
 from spanwise._wheels import Wheels
-from spanwise.crossing import passages_of
+from spanwise.crossing import made_by, passages_of
 from spanwise.roads import ISO8608, Road, Sum
 from spanwise.roads.base import total
 from spanwise.traffic import Drive, Passage, core_drive
@@ -36,7 +36,7 @@ def events_of(vehicle: object) -> tuple[Event, ...]:
         raise TypeError(
             f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage, a list of Passage "
             "for one event, or a list of vehicles or of lists of Passage, of which sample i drives "
-            "number kind[i]"
+            f"number kind[i]{made_by(vehicle)}"
         )
     if all(isinstance(each, Passage) for each in vehicle):
         return (tuple(vehicle),)
@@ -51,7 +51,8 @@ def events_of(vehicle: object) -> tuple[Event, ...]:
             events.append(passages_of(each))
         except TypeError:
             raise TypeError(
-                f"vehicle[{i}] = {shown(each)}: must be a vehicle, a train, or a list of Passage"
+                f"vehicle[{i}] = {shown(each)}: must be a vehicle, a train, or a list of "
+                f"Passage{made_by(each)}"
             ) from None
     return tuple(events)
 

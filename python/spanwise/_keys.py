@@ -84,9 +84,11 @@ def alike(name: object, known: Iterable[str]) -> object:
     return next((each for each in known if bare(each) == bare(name)), name)
 
 
-#: How alike a word must be to be meant, each of several, one of several, and all written as one.
+#: How alike a word must be to be meant, each of several, one of them that is a number, one of
+#: several, and all written as one.
 _ALIKE: Final = 0.6
 _EACH_ALIKE: Final = 0.75
+_DIGITS_ALIKE: Final = 0.5
 _ONE_ALIKE: Final = 0.9
 _WHOLE_ALIKE: Final = 0.8
 
@@ -120,8 +122,11 @@ def _likeness(given: tuple[str, ...], known: tuple[str, ...]) -> float:
     """From 0 to 1, and 0 if they are not alike enough to be meant."""
     whole = _ratio("".join(known), "".join(given))
     if len(given) == len(known):
-        least = min(map(_ratio, known, given))
-        enough = least >= (_ALIKE if len(given) == 1 else _EACH_ALIKE)
+        enough = all(
+            _ratio(each, word)
+            >= (_ALIKE if len(given) == 1 else _DIGITS_ALIKE if each.isdigit() else _EACH_ALIKE)
+            for each, word in zip(known, given, strict=True)
+        )
     else:
         enough = whole >= _WHOLE_ALIKE
     return whole if enough else 0.0

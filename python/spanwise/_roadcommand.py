@@ -120,7 +120,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
 
 def run(options: argparse.Namespace) -> str:
     """Writes the file asked for, and gives the text to print."""
-    with _doubts_told_once() as told:
+    with _doubts_kept(told=options.json == "-") as told:
         road, files = _read(options)
         start, end = _section(road, options.start, options.end)
         index = _or_reason(lambda: road.iri(start, end))
@@ -154,16 +154,18 @@ def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
 
 
 @contextmanager
-def _doubts_told_once() -> Iterator[list[str]]:
-    """Tells warnings, though what follows may be refused, and keeps them."""
-    told: list[str] = []
+def _doubts_kept(*, told: bool) -> Iterator[list[str]]:
+    """Keeps warnings for the text, and tells them if there is none or the road is refused."""
+    kept: list[str] = []
+    refused = True
     with warnings.catch_warnings(record=True) as doubts:
         warnings.simplefilter("always", UserWarning)
         try:
-            yield told
+            yield kept
+            refused = False
         finally:
-            told += dict.fromkeys(str(doubt.message) for doubt in doubts)
-            for message in told:
+            kept += dict.fromkeys(str(doubt.message) for doubt in doubts)
+            for message in kept if told or refused else ():
                 tell(f"spanwise: warning: {message}")
 
 

@@ -46,7 +46,7 @@ def many(number: int, what: str) -> str:
 def warned(sentences: Iterable[str]) -> Iterator[str]:
     """Lines of a summary that tell what was warned of."""
     for said in sentences:
-        first, *more = textwrap.wrap(said, 90, break_long_words=False)
+        first, *more = textwrap.wrap(said, 90, break_long_words=False, break_on_hyphens=False)
         yield f"warning   {first}"
         yield from (f"          {line}" for line in more)
 

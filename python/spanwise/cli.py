@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from types import MappingProxyType
+from typing import Any, Final, NoReturn
 
 from spanwise import _ensemblecommand, _roadcommand
 from spanwise._checks import choice, count
@@ -23,6 +24,12 @@ from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
 from spanwise.roads import CLASSES, ISO8608, Smooth
 from spanwise.summary import summary
+
+#: Where a case says for an ensemble what options of a single crossing say in its place.
+IN_CASE: Final = {
+    "--speed": "; of an ensemble the case sets it, [crossing] speed",
+    "--road": "; of an ensemble the case sets it, [road]",
+}
 
 BAD_INPUT, FAILURE, INTERRUPTED, SIGNALLED = 2, 1, 130, 128
 
@@ -46,8 +53,11 @@ def _main(arguments: Sequence[str] | None) -> int:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", UserWarning)
             text = options.work(options)
+        # What the text says is not said twice on a screen.
+        said = "" if getattr(options, "json", None) == "-" else " ".join(text.split())
         for each in told:
-            tell(f"spanwise: warning: {each.message}")
+            if " ".join(str(each.message).split()) not in said:
+                tell(f"spanwise: warning: {each.message}")
         say(text)
     except KeyboardInterrupt:
         tell("spanwise: interrupted")
@@ -63,6 +73,9 @@ def _main(arguments: Sequence[str] | None) -> int:
 
 
 class _Parser(argparse.ArgumentParser):
+    #: All commands by name, of which one may have the option that another does not.
+    commands: Mapping[str, _Parser] = MappingProxyType({})
+
     def error(self, message: str) -> NoReturn:
         tell(self.format_usage().rstrip())
         raise SystemExit(_complain(message, BAD_INPUT))
@@ -71,10 +84,30 @@ class _Parser(argparse.ArgumentParser):
         """Options that there are not are refused here, where those of the command are known."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            known = [each for each in self._option_string_actions if each.startswith("--")]
-            near = suggestion(unknown[0].partition("=")[0], known)
-            self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+            hint = self._hint(unknown[0].partition("=")[0])
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return found, unknown
+
+    def _hint(self, option: str) -> str:
+        """What may be meant: an option of another command, or else one that is written alike."""
+        others = [
+            f"spanwise {name}"
+            for name, each in self.commands.items()
+            if option.startswith("-") and option in each._option_string_actions
+        ]
+        if others:
+            place = IN_CASE.get(option, "") if self.prog.endswith("ensemble") else ""
+            return f" (an option of {' and '.join(others)}{place})"
+        known = [each for each in self._option_string_actions if each.startswith("--")]
+        return suggestion(option, known)
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Of a command that there is not the nearest is named."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            near = suggestion(value, action.choices or ())
+            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
 
     def _print_message(self, message: str, file: object = None) -> None:
         say(message)
@@ -141,6 +174,8 @@ def _parser() -> _Parser:
     vehicles.add_argument("preset", nargs="?", metavar="PRESET", help="the one to show")
     vehicles.set_defaults(work=_vehicles)
     _roadcommand.add_to(commands)
+    for command in commands.choices.values():
+        command.commands = commands.choices
     return parser
 
 

@@ -11,7 +11,7 @@ from spanwise import _core
 from spanwise._checks import number, shown
 from spanwise._computed import Computed
 from spanwise._conditions import Conditions, Recovery
-from spanwise._keys import suggesting
+from spanwise._keys import alike, suggesting
 from spanwise._plausible import doubts
 from spanwise._remarks import remarks
 from spanwise._warnings import PlausibilityWarning, warn
@@ -21,7 +21,7 @@ from spanwise.damping import Damping
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
 from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
-from spanwise.vehicles import AnyVehicle
+from spanwise.vehicles import PRESETS, AnyVehicle
 
 Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
 
@@ -225,11 +225,24 @@ def passages_of(vehicle: object) -> tuple[Passage, ...]:
     if isinstance(vehicle, list | tuple):
         for i, each in enumerate(vehicle):
             if not isinstance(each, Passage):
-                raise TypeError(f"vehicle[{i}] = {shown(each)}: must be a Passage")
+                row = "; sw.convoy makes passages of vehicles in a row"
+                hint = row if isinstance(each, Wheels) else made_by(each)
+                raise TypeError(f"vehicle[{i}] = {shown(each)}: must be a Passage{hint}")
         if vehicle:
             return tuple(vehicle)
     raise TypeError(
         f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage or a list of Passage"
+        f"{made_by(vehicle)}"
+    )
+
+
+def made_by(name: object) -> str:
+    """What makes a vehicle of the catalogue, of which the name alone was given; or nothing."""
+    meant = alike(name, PRESETS)
+    return (
+        f"; {PRESETS[meant].called} makes one"
+        if isinstance(meant, str) and meant in PRESETS
+        else ""
     )
 
 

@@ -152,7 +152,8 @@ class Run(Responses):
         """Extremes that free vibration after the end can exceed by more than a hundredth.
 
         Of each quantity and side the one that can grow most, if by more than a thousandth of the
-        largest along the bridge too. Where a vehicle stands on the bridge nothing is known.
+        largest along the bridge too. Where a vehicle stands on the bridge nothing is known. After
+        a tail that was given, the representation of the run says that there are some.
         """
         return tuple(growths(self))
 
@@ -261,10 +262,13 @@ class Run(Responses):
         return ModalMotion(*(frozen(self._core.states(name)) for name in rates))
 
     def __repr__(self) -> str:
+        # A tail that was given is meant, and so nothing is warned of.
+        cut = self.settings["tail"] is not None and len(self.can_grow) > 0
+        grow = f", tail {self.tail:.4g} s after which extremes can grow" if cut else ""
         return (
             f"Run({len(self.frequencies)} modes, "
             f"{self.steps} steps of {self.settings['step']:.4g} s, "
-            f"{len(self.sections)} sections, recovery by {self.settings['recovery']})"
+            f"{len(self.sections)} sections, recovery by {self.settings['recovery']}{grow})"
         )
 
     def summary(self) -> str:

@@ -373,6 +373,13 @@ class Preset:
         found = signature(self.make).parameters.values()
         return {p.name: p.default for p in found if p.kind is p.KEYWORD_ONLY}
 
+    @property
+    def called(self) -> str:
+        """How it is made in Python."""
+        if isinstance(self.make, partial):
+            return f"sw.vehicles.{self.make.func.__name__}({', '.join(map(repr, self.make.args))})"
+        return f"sw.vehicles.{getattr(self.make, '__name__', 'PRESETS')}()"
+
     def __call__(self, **options: Any) -> AnyVehicle:
         """The vehicle."""
         return self.make(**options)

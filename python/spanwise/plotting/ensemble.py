@@ -149,10 +149,15 @@ class EnsemblePlot:
         Raises
         ------
         ValueError
-            If that was not looked at, or there are no samples.
+            If that was not looked at or is not along the bridge, or there are no samples.
         """
         quantity = named("quantity", quantity, MEASURES)
         ensemble, measure = self._ensemble, measure_of(quantity)
+        if str(quantity) == "axle_loads":
+            raise ValueError(
+                "quantity = 'axle_loads': is not drawn along the bridge; Ensemble.envelope has "
+                "them, and plot.impact_factors('axle_loads') draws their factors"
+            )
         if quantity not in ensemble.quantities:
             raise ValueError(
                 f"quantity = {quantity!r}: was not looked at; this ensemble has "

@@ -16,6 +16,9 @@ from spanwise.roads.roughness import CLASSES
 #: IRI of a random road of waviness 2 over the square root of its G_d(n0) in 1e-6 m3 [m/km].
 IRI_FACTOR: Final = 0.543
 
+#: Classes of ISO 8608 by what its older edition calls them (as recalled, to be checked).
+NAMED: Final = {"very good": "A", "good": "B", "average": "C", "poor": "D", "very poor": "E"}
+
 #: G_d(n0) at n0 = 0.1 cycle/m by condition [m3]; see `bridge_study`.
 BRIDGE_STUDY: Final[Mapping[str, float]] = {
     "very good": 5e-6,
@@ -122,7 +125,12 @@ class ISO8608(Road):
             if given is None:
                 raise ValueError("class, G: give one of the two")
             return given
-        letter = choice("class", self.road_class, CLASSES)
+        try:
+            letter = choice("class", self.road_class, CLASSES)
+        except ValueError as error:
+            words = str(self.road_class).lower()
+            meant = f"; {words} is class {NAMED[words]}" if words in NAMED else ""
+            raise ValueError(f"{error}{meant}") from None
         if given is not None and given != CLASSES[letter]:
             raise ValueError(f"G = {shown(given)}: not used with class = {shown(letter)}")
         return CLASSES[letter]
