@@ -129,7 +129,7 @@ def cross(
     DampingWarning
         If `damping` is not given.
     PlausibilityWarning
-        If bridge, loads, springs, speed or a measured road are far outside of what there is, as
+        If bridge, damping, loads, springs, speed or the road are far outside of what there is, as
         those in other units are. Each message begins with the name of what it doubts.
     UserWarning
         If a vehicle brakes or accelerates and has all its centres of mass at road level, if its
