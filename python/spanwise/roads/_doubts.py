@@ -17,9 +17,8 @@ Array: TypeAlias = NDArray[np.float64]
 _BASE: Final = 1.0
 
 #: Median slopes over that way, less their mean, beyond which elevations are hardly in metres [-]:
-#: on a road of class A of ISO 8608 it is 0.0012, of F 0.045 at most, of A in inches 0.037 to 0.06,
-#: in centimetres 0.12, in mm 1.2. Classes G and H, seldom met on a bridge, are doubted too.
-_STEEP, _VERY_STEEP = 0.05, 0.5
+#: on a road of class A of ISO 8608 it is 0.0012, of G 0.08, of A in centimetres 0.12, in mm 1.2.
+_STEEP, _VERY_STEEP = 0.1, 0.5
 
 #: How far a point is off the line through its neighbours to be no road [m], and by how many times
 #: what is usual among the others.
@@ -79,9 +78,9 @@ def doubts(x: Array, elevations: Array) -> Iterator[str]:
         )
     elif slope > _STEEP:
         yield (
-            f"elevations: their median slope is {slope:.3g}, as of the roughest classes of ISO "
-            "8608; are they in inches, cm or mm? Multiply them by 0.0254, 0.01 or 0.001, as "
-            f"{given('scale', [1.0, 0.0254])} does in a file"
+            f"elevations: their median slope is {slope:.3g}, as of the roughest class of ISO 8608; "
+            "are they in cm or inches? Multiply them by 0.01 or 0.0254, as "
+            f"{given('scale', [1.0, 0.01])} does in a file"
         )
 
 
