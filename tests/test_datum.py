@@ -197,8 +197,9 @@ def test_energy_on_a_rough_grade() -> None:
     grade, x = 0.04, np.arange(-120.0, 150.0, 0.5)
     waves = 0.01 * np.sin(0.5 * x) + 0.006 * np.cos(0.23 * x)
     road = sw.Profile(x, waves + 250.0 + grade * x, contact_patch=0.0)
-    begins = np.linspace(-100.0, -90.0, 50)
-    datum = float(np.polyfit(begins, road.elevation(begins), 1)[0])
+    # Felt from the line of the first 10 m, told from that of the whole way.
+    begins, whole = np.linspace(-100.0, -90.0, 50), np.linspace(-100.0, 20.0, 50)
+    datum, told = (float(np.polyfit(x, road.elevation(x), 1)[0]) for x in (begins, whole))
     drifts = []
     for step in (2e-3, 1e-3):
         run = sw.cross(
@@ -213,9 +214,10 @@ def test_energy_on_a_rough_grade() -> None:
         increments = run.axle_loads - run.static_axle_loads
         soft = 1.6e6 * 9e5 / (1.6e6 + 9e5)
         strain = ((0.5 * increments + run.static_axle_loads) * increments / soft).sum(axis=1)
-        kinetic = 0.5 * 18e3 * (motion.speed**2 + motion.heave_velocity**2)
+        rising = motion.heave_velocity + (datum - told) * motion.speed
+        kinetic = 0.5 * 18e3 * (motion.speed**2 + rising**2)
         kinetic += 0.5 * 6e4 * motion.pitch_velocity**2
-        height = 18e3 * GRAVITY * (datum * (motion.travel - motion.travel[0]) - motion.heave)
+        height = 18e3 * GRAVITY * (told * (motion.travel - motion.travel[0]) - motion.heave)
         total = (kinetic + height + strain)[before]
         drifts.append(np.abs(total - total[0]).max() / strain.max())
         assert abs(kinetic[before][-1] - kinetic[0]) > 10.0 * strain.max()
@@ -369,4 +371,4 @@ def test_motion_is_told_from_the_line_of_the_whole_way(
         rate = np.gradient(each.displacement, run.time)[1:-1]
         assert np.abs(rate - each.velocity[1:-1]).max() < 0.02 * np.abs(each.velocity).max()
     sunk = np.array([hop.displacement for hop in motion.hops]).T + motion.elevations
-    assert np.abs(sunk[over]).max() < 0.02
+    assert np.abs(sunk[over]).max() < 0.03
