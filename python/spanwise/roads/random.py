@@ -128,7 +128,8 @@ class ISO8608(Road):
         try:
             letter = choice("class", self.road_class, CLASSES)
         except ValueError as error:
-            words = str(self.road_class).lower()
+            given_class: object = self.road_class
+            words = given_class.lower() if isinstance(given_class, str) else ""
             meant = f"; {words} is class {NAMED[words]}" if words in NAMED else ""
             raise ValueError(f"{error}{meant}") from None
         if given is not None and given != CLASSES[letter]:
