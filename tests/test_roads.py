@@ -593,7 +593,7 @@ def test_a_road_too_short_for_the_path(
 
 def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:
     x = np.arange(0.0, 100.0, 0.5)
-    best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "F"))
+    best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "G"))
     sw.Profile(x, worst)
     with pytest.warns(UserWarning, match=r"elevations: their median slope is .*in mm\?.*scale"):
         sw.Profile(x, 1e3 * best)
