@@ -627,7 +627,8 @@ def test_advice_names_what_the_place_has(
     file = tmp_path / "road.txt"
     file.write_text(text)
     main(["road", str(file), *options])
-    assert there in " ".join(" ".join(capsys.readouterr()).split())
+    out, err = capsys.readouterr()
+    assert there in err + " ".join(out.split())
     # Python and case files have other names; the command leaves nothing behind.
     names = {"--profile-start": "start", "--columns": "columns", "--spacing": "spacing"}
     given = {
