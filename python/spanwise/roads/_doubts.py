@@ -16,9 +16,16 @@ Array: TypeAlias = NDArray[np.float64]
 #: Way over which slopes are taken [m]: over less, texture measured every millimetre is steep too.
 _BASE: Final = 1.0
 
-#: Median slopes over that way, less their mean, beyond which elevations are hardly in metres [-]:
-#: on a road of class A of ISO 8608 it is 0.0012, of G 0.08, of A in centimetres 0.12, in mm 1.2.
-_STEEP, _VERY_STEEP = 0.1, 0.5
+#: Slopes so far on both sides of one make the grade there, which vertical curves change [m].
+_AROUND: Final = 10.0
+
+#: Median slopes over that way, less the grade there, beyond which elevations are hardly in metres
+#: [-]: on a road of class A of ISO 8608 it is 0.0012, of E 0.02, of A in inches 0.047, in
+#: centimetres 0.12, in mm 1.2. Classes F to H, which no bridge should have, are doubted too.
+_STEEP, _VERY_STEEP = 0.03, 0.5
+
+#: Fewest slopes of which a median says something.
+_FEWEST: Final = 6
 
 #: How far a point is off the line through its neighbours to be no road [m], and by how many times
 #: what is usual among the others.
@@ -78,19 +85,26 @@ def doubts(x: Array, elevations: Array) -> Iterator[str]:
         )
     elif slope > _STEEP:
         yield (
-            f"elevations: their median slope is {slope:.3g}, as of the roughest class of ISO 8608; "
-            "are they in cm or inches? Multiply them by 0.01 or 0.0254, as "
-            f"{given('scale', [1.0, 0.01])} does in a file"
+            f"elevations: their median slope is {slope:.3g}, as of class F of ISO 8608 or worse; "
+            "are they in inches, cm or mm? Multiply them by 0.0254, 0.01 or 0.001, as "
+            f"{given('scale', [1.0, 0.0254])} does in a file"
         )
 
 
 def _slope(x: Array, elevations: Array) -> float:
-    """Median deviation of slopes from their median, over a metre or the points' distance."""
+    """Median deviation of slopes over a metre, or the points' distance, from the grade there."""
     length = float(x[-1] - x[0])
     base = max(min(_BASE, length / 8.0), length / 1e5, float(np.median(np.diff(x))))
     places = x[0] + base * np.arange(int(length / base) + 1)
     slopes = np.diff(np.interp(places, x, elevations)) / base
-    return float(np.median(np.abs(slopes - np.median(slopes)))) if len(slopes) else 0.0
+    if len(slopes) < _FEWEST:
+        return 0.0
+    sums = np.concatenate([[0.0], np.cumsum(slopes)])
+    at = np.arange(len(slopes))
+    beside = max(round(_AROUND / base), 1)
+    first, end = np.maximum(at - beside, 0), np.minimum(at + beside + 1, len(slopes))
+    grade = (sums[end] - sums[first]) / (end - first)
+    return float(np.median(np.abs(slopes - grade)))
 
 
 def _dropped(x: Array, elevations: Array) -> tuple[int, float] | None:
