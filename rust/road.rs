@@ -259,7 +259,10 @@ impl Road {
         self.check_holds(from, to).map_err(|error| {
             let ([first, last], start) = (self.ends(), down_to_mm(from));
             let long_enough = start + (last - first) >= to;
-            let moved = format!(", or move this one: start = {start} where it is read from a file");
+            let moved = format!(
+                ", or say where this one begins as it is read from a file: start = its first station minus the station \
+                 of the bridge's left end, {start} at most"
+            );
             error.advising("; give a longer road").advising(if long_enough { &moved } else { "" })
         })?;
         let period = self.period();

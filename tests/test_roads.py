@@ -549,13 +549,15 @@ TOO_SHORT: list[tuple[tuple[float, float, float], dict[str, Any], str]] = [
     (
         (-3.0, 200.0, 100.0),
         {},
-        "give a longer road, or move this one: start = -100 where it is read from a file, "
+        "give a longer road, or say where this one begins as it is read from a file: start = its "
+        "first station minus the station of the bridge's left end, -100 at most, "
         "or approach = 3 at most",
     ),
     (
         (-100.0, 100.0, 100.0),
         {"direction": "left"},
-        "give a longer road, or move this one: start = 0 where it is read from a file, "
+        "give a longer road, or say where this one begins as it is read from a file: start = its "
+        "first station minus the station of the bridge's left end, 0 at most, "
         "or approach = 79.9 at most",
     ),
     ((-1.0, 25.0, 100.0), {"direction": "left"}, "give a longer road, or approach = 4.899 at most"),
@@ -593,7 +595,7 @@ def test_a_road_too_short_for_the_path(
 
 def test_elevations_in_millimetres_are_doubted(tmp_path: Path) -> None:
     x = np.arange(0.0, 100.0, 0.5)
-    best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "G"))
+    best, worst = (sw.ISO8608(each).elevation(x) for each in ("A", "E"))
     sw.Profile(x, worst)
     with pytest.warns(UserWarning, match=r"elevations: their median slope is .*in mm\?.*scale"):
         sw.Profile(x, 1e3 * best)

@@ -68,10 +68,9 @@ class Profile(Road):
     counted from the least-squares line of the first 10 m from the start of the approach. `detrend`
     is for what else is made of the elevations.
 
-    Of units that nobody tells, elevations in mm are noticed, in cm too, and in inches on roads of
-    class C or rougher. Not noticed are inches on better roads, which look like those of class F or
-    G: `iso_class` and `iri` tell that. Nor are elevations in feet, or x in feet or yards, which
-    looks like a longer road: compare `ends` with the length that was measured.
+    Of units that nobody tells, elevations in mm, cm and inches are noticed, by slopes as of class F
+    or worse, which a road of class F has in metres too. Not noticed are elevations in feet, or x in
+    feet or yards, which looks like a longer road: compare `ends` with the length that was measured.
     """
 
     kind: ClassVar[str] = "profile"
