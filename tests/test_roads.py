@@ -587,7 +587,7 @@ def test_a_road_too_short_for_the_path(
     with pytest.raises(ValueError, match=rf"the road covers only .*; {re.escape(cure)}$"):
         cross(first, approach)
     # What is said to help does.
-    if start := re.search(r"start = (\S+)", cure):
+    if start := re.search(r"left end, (\S+) at most", cure):
         cross(float(start[1]), approach)
     if most := re.search(r"approach = (\S+)", cure):
         cross(first, float(most[1]))
