@@ -68,18 +68,6 @@ pub trait Lane:
         Self::select(self.less(other), self, other)
     }
 
-    /// The larger of two, each with a number that is chosen along with it: `other` only where it is greater.
-    #[inline(always)]
-    fn larger_with([own, its]: [Self; 2], [other, others]: [Self; 2]) -> [Self; 2] {
-        [other.larger(own), Self::select(own.less(other), others, its)]
-    }
-
-    /// The smaller of two in the same way.
-    #[inline(always)]
-    fn smaller_with([own, its]: [Self; 2], [other, others]: [Self; 2]) -> [Self; 2] {
-        [other.smaller(own), Self::select(other.less(own), others, its)]
-    }
-
     /// e to the power of self, the same bits on every machine.
     fn exp(self) -> Self;
 

@@ -58,8 +58,11 @@ impl<L: Lane> Watched<L> {
     /// Takes in a value; of equal values the first counts.
     #[inline(always)]
     pub fn take(&mut self, value: L, at: L) {
-        [self.max, self.max_at] = L::larger_with([self.max, self.max_at], [value, at]);
-        [self.min, self.min_at] = L::smaller_with([self.min, self.min_at], [value, at]);
+        let (above, below) = (self.max.less(value), value.less(self.min));
+        self.max_at = L::select(above, at, self.max_at);
+        self.min_at = L::select(below, at, self.min_at);
+        self.max = value.larger(self.max);
+        self.min = value.smaller(self.min);
     }
 
     /// Whether values within these bounds, the upper and the lower, can be new extremes in any lane, where it is known

@@ -162,27 +162,6 @@ impl<const N: usize> Lane for Wide<N> {
         self
     }
 
-    // One comparison for both choices, and no mask in between.
-    #[inline(always)]
-    fn larger_with([mut own, mut its]: [Self; 2], [other, others]: [Self; 2]) -> [Self; 2] {
-        for i in 0..N {
-            let above = other.0[i] > own.0[i];
-            own.0[i] = if above { other.0[i] } else { own.0[i] };
-            its.0[i] = if above { others.0[i] } else { its.0[i] };
-        }
-        [own, its]
-    }
-
-    #[inline(always)]
-    fn smaller_with([mut own, mut its]: [Self; 2], [other, others]: [Self; 2]) -> [Self; 2] {
-        for i in 0..N {
-            let below = other.0[i] < own.0[i];
-            own.0[i] = if below { other.0[i] } else { own.0[i] };
-            its.0[i] = if below { others.0[i] } else { its.0[i] };
-        }
-        [own, its]
-    }
-
     #[inline(always)]
     fn magnitude(mut self) -> Self {
         for i in 0..N {
