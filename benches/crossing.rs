@@ -8,8 +8,8 @@ use problems::vehicles::{articulated, half_car};
 use problems::{kishan_bridge, kishan_vehicle};
 use spanwise::crossing::analysis::Preparation;
 use spanwise::crossing::cross;
-use spanwise::crossing::extremes::Survey;
 use spanwise::crossing::history::History;
+use spanwise::crossing::observer::Observer;
 use spanwise::crossing::tail::Watch;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
@@ -24,7 +24,7 @@ use spanwise::vehicle::body::Friction;
 struct Blind;
 
 impl Watch for Blind {
-    fn enough(&mut self, _: &mut History, _: &Reach<f64>, _: StopToken<'_>) -> Result<bool, Error> {
+    fn enough(&mut self, _: &History, _: &Reach<f64>, _: StopToken<'_>) -> Result<bool, Error> {
         Ok(false)
     }
 }
@@ -51,17 +51,14 @@ fn kishan_1973(c: &mut Criterion) {
         b.iter(|| steps(&steady));
     });
     let history = steps(&rolling);
-    let packed = analysis.rows.pack_history(&history);
-    group.bench_function("recovery/pack", |b| b.iter(|| analysis.rows.pack_history(&history)));
     group.bench_function("recovery/extremes", |b| {
         b.iter(|| {
-            let mut survey = Survey::new(&history, &analysis.rows, &analysis.responses);
-            survey.go_on(&history, &packed, StopToken::NEVER).unwrap();
-            survey.conclude(&history, &packed)
+            let observer = Observer::new(&analysis.rows, &analysis.look, &analysis.free, None);
+            observer.conclude(&history, StopToken::NEVER).unwrap()
         });
     });
     group.bench_function("recovery/histories", |b| {
-        b.iter(|| analysis.rows.histories(&packed, 0..analysis.rows.len(), StopToken::NEVER).unwrap());
+        b.iter(|| history.responses(&analysis.rows, 0..analysis.rows.len(), StopToken::NEVER).unwrap());
     });
     group.finish();
 }

@@ -1,17 +1,15 @@
 //! One crossing: from the front axle at the start of the approach until the last axle has left and the tail is over.
 //!
 //! An [`analysis`] is a bridge prepared for crossings. The [`time_loop`] takes the steps and keeps their states in a
-//! [`history`], and the [`tail`] goes on until nothing larger can come. The [`extremes`] of every response are looked
-//! for in the history, step by step ([`watched`]) and as axles pass sections; the [`envelope`] has them and the impact
-//! factors.
+//! [`history`], and the [`tail`] goes on until nothing larger can come. The [`observer`] looks for the extremes of every
+//! response, and the [`envelope`] has them and the impact factors.
 
 pub mod analysis;
 pub mod envelope;
-pub mod extremes;
 pub mod history;
+pub mod observer;
 pub mod tail;
 pub mod time_loop;
-pub mod watched;
 
 use crate::crossing::history::History;
 use crate::crossing::tail::Watch;

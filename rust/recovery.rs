@@ -5,19 +5,14 @@
 //! g(x) = IL(x) − Σ ρ_m φ_m(x)/ω_m². The sequence itself stands in [`crate::force_summation`], for reading and for
 //! testing.
 
-use std::ops::Range;
-
 use faer::Mat;
 
 use crate::bridge::cubics::{Line, Mesh};
-use crate::crossing::history::History;
 use crate::damping::{Damping, ModalDamping};
-use crate::error::Error;
 use crate::lane::wide::Wide;
 use crate::modes::Modes;
 use crate::spline::value;
 use crate::statics::influence::Responses;
-use crate::stop_token::StopToken;
 
 /// How responses follow from the included modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,39 +28,6 @@ pub enum Recovery {
 /// A position on the bridge as panel and fraction of it, `None` off the bridge.
 pub type Place = Option<(usize, f64)>;
 
-/// Modal state and axle loads at one instant.
-#[derive(Debug, Clone, Copy)]
-pub struct Instant<'a> {
-    /// Modal coordinates.
-    pub a: &'a [f64],
-    /// Modal velocities.
-    pub a_dot: &'a [f64],
-    /// Modal accelerations.
-    pub a_ddot: &'a [f64],
-    /// Axle loads [N].
-    pub loads: &'a [f64],
-    /// Static axle loads [N].
-    pub static_loads: &'a [f64],
-    /// Where the axles stand.
-    pub places: &'a [Place],
-}
-
-impl<'a> Instant<'a> {
-    /// Row i of a history, its axles placed.
-    #[inline(always)]
-    pub fn of(history: &'a History, i: usize, places: &'a [Place]) -> Self {
-        let (m, k) = (history.modes, history.axles);
-        Instant {
-            a: &history.a[i * m..(i + 1) * m],
-            a_dot: &history.a_dot[i * m..(i + 1) * m],
-            a_ddot: &history.a_ddot[i * m..(i + 1) * m],
-            loads: &history.loads[i * k..(i + 1) * k],
-            static_loads: &history.static_loads,
-            places,
-        }
-    }
-}
-
 /// Responses are evaluated this many at a time, in registers.
 pub const WIDTH: usize = 8;
 
@@ -75,73 +37,21 @@ pub type Block = [f64; WIDTH];
 /// The same as lanes, responses side by side.
 pub type Responding = Wide<WIDTH>;
 
-/// Instants made ready for [`Rows::block`], one after another.
-#[derive(Debug, Clone, Default)]
-pub struct Packed {
-    /// Coordinates and axles of each instant.
-    width: [usize; 2],
-    /// What the factors multiply: A, or Ȧ and Ä.
-    coordinates: Vec<f64>,
-    /// Ā_st, the modal coordinates of the static loads, or zeros where the rows do not need them.
-    static_coordinates: Vec<f64>,
-    axles: Vec<Placed>,
-}
-
-impl Packed {
-    /// Forgets all instants.
-    pub fn clear(&mut self) {
-        self.coordinates.clear();
-        self.static_coordinates.clear();
-        self.axles.clear();
-    }
-
-    /// Some of the instants.
-    #[inline(always)]
-    pub fn instants(&self, range: Range<usize>) -> impl Iterator<Item = Ready<'_>> {
-        let [width, axles] = self.width;
-        let coordinates = width * range.start..width * range.end;
-        let coordinates = (self.coordinates[coordinates.clone()].chunks_exact(width))
-            .zip(self.static_coordinates[coordinates].chunks_exact(width));
-        coordinates
-            .zip(self.axles[axles * range.start..axles * range.end].chunks_exact(axles))
-            .map(|((coordinates, static_coordinates), axles)| Ready { coordinates, static_coordinates, axles })
-    }
-
-    /// Number of instants.
-    pub fn len(&self) -> usize {
-        self.axles.len().checked_div(self.width[1]).unwrap_or(0)
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.axles.is_empty()
-    }
-}
-
-/// One of the instants in [`Packed`].
-#[derive(Debug, Clone, Copy)]
-pub struct Ready<'a> {
-    coordinates: &'a [f64],
-    static_coordinates: &'a [f64],
-    axles: &'a [Placed],
-}
-
 /// An axle on the bridge or, without a load, off it.
 #[derive(Debug, Clone, Copy)]
 pub struct Placed {
     panel: usize,
     fraction: f64,
     load: f64,
-    static_load: f64,
 }
 
 impl Placed {
-    /// An axle at a place with its loads [N].
+    /// An axle at a place with its load [N].
     #[inline(always)]
-    pub fn new(place: Place, load: f64, static_load: f64) -> Self {
+    pub fn new(place: Place, load: f64) -> Self {
         match place {
-            Some((panel, fraction)) => Placed { panel, fraction, load, static_load },
-            None => Placed { panel: 0, fraction: 0.0, load: 0.0, static_load: 0.0 },
+            Some((panel, fraction)) => Placed { panel, fraction, load },
+            None => Placed { panel: 0, fraction: 0.0, load: 0.0 },
         }
     }
 }
@@ -323,62 +233,10 @@ impl Rows {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
     }
 
-    /// Makes an instant ready and adds it to the others.
-    pub fn pack(&self, now: &Instant<'_>, packed: &mut Packed) {
-        packed.width = [self.width, now.places.len()];
-        match self.recovery {
-            Recovery::ForceSummation | Recovery::Superposition => packed.coordinates.extend_from_slice(now.a),
-            Recovery::ForceSummationByRates => {
-                packed.coordinates.extend_from_slice(now.a_dot);
-                packed.coordinates.extend_from_slice(now.a_ddot);
-            }
-        }
-        for i in 0..self.width {
-            let placed = now.places.iter().zip(now.static_loads);
-            packed.static_coordinates.push(self.static_shapes.get(i).map_or(0.0, |shape| {
-                placed.fold(0.0, |sum, (place, load)| place.map_or(sum, |(p, f)| sum + load * shape.value(p, f)))
-            }));
-        }
-        let weight = self.weight();
-        for ((place, load), &static_load) in now.places.iter().zip(now.loads).zip(now.static_loads) {
-            packed.axles.push(Placed::new(*place, weight * load, static_load));
-        }
-    }
-
-    /// One block of responses at one instant, dynamic and static.
+    /// One block of responses to coordinates and to loads at their places.
     // Always inlined, so that it is compiled for the instruction set of the loop around it.
     #[inline(always)]
-    pub fn block(&self, b: usize, now: Ready<'_>) -> (Block, Block) {
-        let (mut dynamic, mut at_rest) = ([0.0; WIDTH], [0.0; WIDTH]);
-        let factors = &self.factors[b * self.width..(b + 1) * self.width];
-        for ((factor, a), a_static) in factors.iter().zip(now.coordinates).zip(now.static_coordinates) {
-            for i in 0..WIDTH {
-                dynamic[i] += factor[i] * a;
-                at_rest[i] += factor[i] * a_static;
-            }
-        }
-        for axle in now.axles {
-            let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
-            let f = axle.fraction;
-            for i in 0..WIDTH {
-                let g = value([c0[i], c1[i], c2[i], c3[i]], f);
-                dynamic[i] += g * axle.load;
-                at_rest[i] += g * axle.static_load;
-            }
-        }
-        (dynamic, at_rest)
-    }
-
-    /// One response at one instant, to the bit as [`Rows::block`] has it.
-    pub fn value(&self, r: usize, now: Ready<'_>) -> f64 {
-        let modal = now.coordinates.iter().enumerate().fold(0.0, |sum, (i, a)| sum + self.factor(r, i) * a);
-        let axles = now.axles.iter();
-        axles.fold(modal, |sum, axle| sum + self.influence_of(r, (axle.panel, axle.fraction)) * axle.load)
-    }
-
-    /// One block of responses to coordinates and to loads at their places.
-    #[inline(always)]
-    pub fn block_of(&self, b: usize, coordinates: &[f64], axles: &[Placed]) -> Block {
+    pub fn block(&self, b: usize, coordinates: &[f64], axles: &[Placed]) -> Block {
         let mut values = [0.0; WIDTH];
         for (factor, a) in self.factors[b * self.width..(b + 1) * self.width].iter().zip(coordinates) {
             for i in 0..WIDTH {
@@ -393,78 +251,6 @@ impl Rows {
             }
         }
         values
-    }
-
-    /// All instants of a history made ready.
-    pub fn pack_history(&self, history: &History) -> Packed {
-        let mut packed = Packed::default();
-        self.pack_on(history, &mut packed);
-        packed
-    }
-
-    /// The same, of the instants that have been added to the history since.
-    pub fn pack_on(&self, history: &History, packed: &mut Packed) {
-        let (axles, from) = (history.axles, packed.len());
-        // For all that the history has room for, so that numbers are not moved each time that it has grown.
-        let more = history.time.capacity() - from;
-        packed.coordinates.reserve(self.width * more);
-        packed.static_coordinates.reserve(self.width * more);
-        packed.axles.reserve(axles * more);
-        let mut places = vec![None; axles];
-        for (i, positions) in history.positions.chunks_exact(axles).enumerate().skip(from) {
-            for (place, &x) in places.iter_mut().zip(positions) {
-                *place = self.place(x);
-            }
-            self.pack(&Instant::of(history, i, &places), packed);
-        }
-    }
-
-    /// The responses of a range at every instant, dynamic and static, row by row.
-    pub fn histories(&self, packed: &Packed, range: Range<usize>, stop: StopToken<'_>) -> Result<[Vec<f64>; 2], Error> {
-        let count = range.len() * packed.len();
-        let mut filling = Filling {
-            rows: self,
-            packed,
-            range,
-            instants: 0..0,
-            out: [Vec::with_capacity(count), Vec::with_capacity(count)],
-        };
-        let arch = pulp::Arch::new();
-        for from in (0..packed.len()).step_by(POLL_EVERY) {
-            filling.instants = from..(from + POLL_EVERY).min(packed.len());
-            arch.dispatch(&mut filling);
-            stop.check()?;
-        }
-        Ok(filling.out)
-    }
-}
-
-/// Instants between two questions whether to go on.
-const POLL_EVERY: usize = 1024;
-
-/// Histories being filled in, compiled once for each instruction set.
-struct Filling<'a> {
-    rows: &'a Rows,
-    packed: &'a Packed,
-    range: Range<usize>,
-    instants: Range<usize>,
-    out: [Vec<f64>; 2],
-}
-
-impl pulp::WithSimd for &mut Filling<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        for now in self.packed.instants(self.instants.clone()) {
-            for b in self.range.start / WIDTH..self.range.end.div_ceil(WIDTH) {
-                let (dynamic, at_rest) = self.rows.block(b, now);
-                let first = b * WIDTH;
-                let wanted = self.range.start.max(first) - first..self.range.end.min(first + WIDTH) - first;
-                self.out[0].extend_from_slice(&dynamic[wanted.clone()]);
-                self.out[1].extend_from_slice(&at_rest[wanted]);
-            }
-        }
     }
 }
 

@@ -167,6 +167,11 @@ impl Vehicle {
         self.assembly.static_loads(gravity)
     }
 
+    /// Vertical displacement of every body, as rows over the coordinates.
+    pub fn heaves(&self) -> Vec<Vec<f64>> {
+        self.assembly.bodies.iter().map(|[heave, _]| heave.iter().copied().collect()).collect()
+    }
+
     /// Natural frequencies on rigid ground with every suspension in the given state [Hz], ascending: one for each
     /// coordinate of the assembly.
     pub fn frequencies(&self, suspension: Suspension) -> Vec<f64> {

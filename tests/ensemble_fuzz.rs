@@ -12,8 +12,9 @@ use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
 use spanwise::bridge::Bridge;
 use spanwise::bridge::lumping::Stations;
 use spanwise::damping::Damping;
-use spanwise::ensemble::results::{Column, stop_or_step};
+use spanwise::ensemble::results::{Column, decoded};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::extremes::Instant;
 use spanwise::lane::dispatch::Isa;
 use spanwise::passage::Passage;
 use spanwise::passage::settings::{Settings, Tail};
@@ -230,9 +231,9 @@ fn check(case: Case) -> Result<(), TestCaseError> {
         let last = path.steps as f64 + column(results, sample, Column::Tail)[0] * speed / path.advance + 1.0;
         let hands = found.clock.of(march);
         for &instant in &instants[..2 * layout.responses] {
-            let known = match stop_or_step(instant) {
-                Ok(_) => hands.when(speed, instant).0.is_finite(),
-                Err(step) => step as f64 <= last,
+            let known = match decoded(instant) {
+                Instant::Stop(_) => hands.when(speed, instant).0.is_finite(),
+                Instant::Step(step) => step as f64 <= last,
             };
             prop_assert!(known, "instant {}", instant);
         }

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use spanwise::crossing::watched::Watched;
+use spanwise::extremes::Watched;
 use spanwise::lane::Lane;
 use spanwise::lane::bits::Bits;
 use spanwise::lane::dispatch::{InLanes, Isa, with};

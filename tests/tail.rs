@@ -8,9 +8,10 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use spanwise::bridge::Bridge;
 use spanwise::bridge::lumping::Stations;
-use spanwise::crossing::analysis::{Analysis, Preparation, Watching};
+use spanwise::crossing::analysis::{Analysis, Preparation};
 use spanwise::crossing::cross;
 use spanwise::crossing::history::History;
+use spanwise::crossing::observer::Observer;
 use spanwise::crossing::tail::Watch;
 use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::Study;
@@ -170,8 +171,8 @@ fn nothing_comes_after_a_tail_that_ended_by_itself() {
 struct Thorough<'a>(&'a Analysis);
 
 impl Watch for Thorough<'_> {
-    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
-        Watching::new(self.0, &self.0.free, [1.0, 1.0]).enough(history, reach, stop)
+    fn enough(&mut self, history: &History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
+        Observer::new(&self.0.rows, &self.0.look, &self.0.free, None).enough(history, reach, stop)
     }
 }
 

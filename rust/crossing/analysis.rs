@@ -7,9 +7,9 @@ use crate::bridge::Bridge;
 use crate::bridge::cubics::{COINCIDENT, check_lines};
 use crate::crossing::cross;
 use crate::crossing::envelope::{Envelope, axle_loads};
-use crate::crossing::extremes::Survey;
 use crate::crossing::history::History;
-use crate::crossing::tail::{FreeRows, Watch};
+use crate::crossing::observer::Observer;
+use crate::crossing::tail::FreeRows;
 use crate::damping::Damping;
 use crate::error::Error;
 use crate::float_mode::Standard;
@@ -19,10 +19,11 @@ use crate::modal_bridge::{ModalBridge, ModeShapes};
 use crate::modes::Modes;
 use crate::passage::Passage;
 use crate::passage::settings::Settings;
-use crate::recovery::{ModalFactors, Packed, Recovery, Rows};
+use crate::recovery::{ModalFactors, Recovery, Rows};
+use crate::selection::Selection;
 use crate::statics::flexibility::Flexibility;
 use crate::statics::influence::{Quantity, Responses};
-use crate::step::vibration::Reach;
+use crate::statistics::Ride;
 use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 
@@ -47,6 +48,8 @@ pub struct Analysis {
     pub missing: Vec<Quantity>,
     /// How they follow from modal states.
     pub rows: Rows,
+    /// The distinct ones among them, all of them looked at.
+    pub look: Selection,
     /// The same without vehicles on the bridge.
     pub free: FreeRows,
 }
@@ -118,8 +121,7 @@ impl Preparation {
         let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
         let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
         let rows = Rows::new(&responses, &factors, &modes.omega, &lines, mesh, *recovery);
-        let free = FreeRows::new(&rows, &responses, &model);
-        Ok(Analysis { sections, modes, model, responses, missing: Vec::new(), rows, free })
+        Ok(Analysis::new(sections, modes, model, responses, Vec::new(), rows))
     }
 
     /// A bridge given by its flexibility or its modes, in `count` modes.
@@ -139,12 +141,24 @@ impl Preparation {
             damping: in_modes,
             narrowest_panel: given.narrowest_panel(),
         };
-        let free = FreeRows::new(&rows, &responses, &model);
-        Ok(Analysis { sections, modes, model, responses, missing: given.missing().to_vec(), rows, free })
+        Ok(Analysis::new(sections, modes, model, responses, given.missing().to_vec(), rows))
     }
 }
 
 impl Analysis {
+    fn new(
+        sections: Vec<f64>,
+        modes: Modes,
+        model: ModalBridge,
+        responses: Responses,
+        missing: Vec<Quantity>,
+        rows: Rows,
+    ) -> Self {
+        let look = Selection::new(&rows, &responses, &Quantity::ALL);
+        let free = FreeRows::new(&rows, &responses, &model).of(look.rows.iter().map(|row| row.response));
+        Analysis { sections, modes, model, responses, missing, rows, look, free }
+    }
+
     /// One crossing by one vehicle.
     pub fn cross(&self, vehicle: &Vehicle, settings: &Settings, stop: StopToken<'_>) -> Result<Outcome, Error> {
         self.cross_all(&[Passage::of(vehicle.clone())], settings, stop)
@@ -153,16 +167,16 @@ impl Analysis {
     /// One crossing by several vehicles.
     pub fn cross_all(&self, passages: &[Passage], settings: &Settings, stop: StopToken<'_>) -> Result<Outcome, Error> {
         let _mode = Standard::set();
-        let mut watching = Watching::new(self, &self.free, [1.0, 1.0]);
-        let mut history = cross(&self.model, passages, settings, &mut watching, stop)?;
-        let (packed, envelope) = watching.conclude(&mut history, stop)?;
-        let bounds = history.reach.as_ref().map(|reach| self.free.bounds(reach));
-        Ok(Outcome { axle_loads: axle_loads(&history), history, packed, envelope, bounds })
-    }
-
-    /// An outcome that has travelled, with what did not.
-    pub fn received(&self, outcome: Outcome) -> Outcome {
-        Outcome { packed: self.rows.pack_history(&outcome.history), ..outcome }
+        let mut observer = Observer::new(&self.rows, &self.look, &self.free, None);
+        let history = cross(&self.model, passages, settings, &mut observer, stop)?;
+        let envelope = observer.conclude(&history, stop)?;
+        let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
+        let rides = history.rides(&bodies, self.rows.mesh().length());
+        let bounds = history.reach.as_ref().map(|reach| {
+            let of_rows = self.free.bounds(reach);
+            self.look.row_of.iter().map(|&row| of_rows[row]).collect()
+        });
+        Ok(Outcome { axle_loads: axle_loads(&history, &rides), history, envelope, rides, bounds })
     }
 
     /// The responses of one quantity at every instant, dynamic and static, row by row.
@@ -182,7 +196,7 @@ impl Analysis {
         let mend = "use fewer sections or a longer step";
         memory::check("sections", size, bytes, MAX_HISTORY_BYTES, "histories there", mend)?;
         let _mode = Standard::set();
-        self.rows.histories(&outcome.packed, range, stop)
+        outcome.history.responses(&self.rows, range, stop)
     }
 
     /// Extremes of one quantity; shears on both sides of a section count together.
@@ -206,89 +220,22 @@ impl Analysis {
 pub struct Outcome {
     /// States, step after step.
     pub history: History,
-    /// The same, made ready for recovery; it does not travel.
-    #[serde(skip)]
-    pub packed: Packed,
     /// Extremes of all responses.
     pub envelope: Envelope,
     /// Extremes of the axle loads.
     pub axle_loads: Envelope,
+    /// Contact forces and accelerations of each vehicle.
+    pub rides: Vec<Ride<f64>>,
     /// Largest magnitude of every response that free vibration after the end can reach; none where a vehicle stands on
     /// the bridge.
     pub bounds: Option<Vec<f64>>,
 }
 
-/// The survey of a crossing on its way.
-pub struct Watching<'a> {
-    analysis: &'a Analysis,
-    /// The responses that count.
-    free: &'a FreeRows,
-    /// What A and Ȧ are to be multiplied by for the rows.
-    factors: [f64; 2],
-    packed: Packed,
-    survey: Option<Survey<'a>>,
-    /// A row that could still grow when last asked, with what it had reached at so many instants.
-    growing: Option<(usize, [f64; 2], usize)>,
-}
-
-impl<'a> Watching<'a> {
-    /// By the rows of an analysis, which take A and Ȧ so many times as large; the tail is to be long enough for some of
-    /// its responses.
-    pub fn new(analysis: &'a Analysis, free: &'a FreeRows, factors: [f64; 2]) -> Self {
-        Watching { analysis, free, factors, packed: Packed::default(), survey: None, growing: None }
-    }
-
-    /// Makes ready what has been recorded since.
-    fn make_ready(&mut self, history: &mut History) {
-        let [coordinates, rates] = self.factors;
-        history.scale(self.packed.len(), coordinates, rates);
-        self.analysis.rows.pack_on(history, &mut self.packed);
-    }
-
-    /// Takes in what has been recorded since.
-    fn take_in(&mut self, history: &mut History, stop: StopToken<'_>) -> Result<&Survey<'a>, Error> {
-        self.make_ready(history);
-        let Analysis { rows, responses, .. } = self.analysis;
-        let survey = self.survey.get_or_insert_with(|| Survey::new(history, rows, responses));
-        survey.go_on(history, &self.packed, stop)?;
-        Ok(survey)
-    }
-
-    /// What it has come to, the crossing being over.
-    pub fn conclude(mut self, history: &mut History, stop: StopToken<'_>) -> Result<(Packed, Envelope), Error> {
-        self.take_in(history, stop)?;
-        let Watching { analysis, packed, survey, .. } = self;
-        let survey = survey.unwrap_or_else(|| Survey::new(history, &analysis.rows, &analysis.responses));
-        let envelope = survey.conclude(history, &packed);
-        Ok((packed, envelope))
-    }
-}
-
-impl Watch for Watching<'_> {
-    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
-        let (free, [coordinates, rates]) = (self.free, self.factors);
-        let reach = reach.clone().scaled(coordinates, rates);
-        let load: f64 = history.static_loads.iter().sum();
-        self.make_ready(history);
-        // One row that can still grow is enough to go on, and little work to ask: all others can wait.
-        if let (Some((row, seen, instants)), Some(survey)) = (&mut self.growing, &self.survey)
-            && survey.is_past()
-        {
-            for now in self.packed.instants(*instants..self.packed.len()) {
-                let value = self.analysis.rows.value(free.responses[*row], now);
-                *seen = [seen[0].max(value), seen[1].min(value)];
-            }
-            *instants = self.packed.len();
-            if free.unsettled(*row, &reach, load, *seen) {
-                return Ok(false);
-            }
-        }
-        let survey = self.take_in(history, stop)?;
-        let reached = |row: usize| survey.reached(free.responses[row]);
-        let mut rows = 0..free.responses.len();
-        let growing = rows.find(|&row| free.unsettled(row, &reach, load, reached(row))).map(|row| (row, reached(row)));
-        self.growing = growing.map(|(row, seen)| (row, seen, self.packed.len()));
-        Ok(growing.is_none())
+impl Outcome {
+    /// Root mean square of each axle load about its static value, by that value, while its vehicle is on the bridge [-].
+    pub fn load_coefficients(&self) -> Vec<f64> {
+        let axles = self.rides.iter().flat_map(|ride| (0..ride.loads.len()).map(move |own| (ride, own)));
+        axles.zip(&self.history.static_loads).map(|((ride, own), &load)| ride.load_coefficient(own, 0, load)).collect()
     }
 }
 

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::crossing::history::History;
+use crate::statistics::Ride;
+use crate::stops::Positions;
 
 /// An extreme of a response over a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,27 +28,6 @@ pub struct Extremes {
     pub min: Vec<Extreme>,
 }
 
-impl Extremes {
-    /// Nothing seen yet: loses against every number.
-    pub(crate) fn none(responses: usize) -> Self {
-        let lost = |value| Extreme { value, time: f64::INFINITY, position: f64::NAN, partner: f64::NAN };
-        Extremes { max: vec![lost(f64::NEG_INFINITY); responses], min: vec![lost(f64::INFINITY); responses] }
-    }
-
-    /// Takes in one response at one instant; of equal values the earliest counts, in whatever order they come.
-    pub(crate) fn take(&mut self, r: usize, seen: Extreme) {
-        // Zeros lose their sign, which says nothing and would depend on the order of sums.
-        let seen = Extreme { value: seen.value + 0.0, ..seen };
-        let (max, min) = (&mut self.max[r], &mut self.min[r]);
-        if seen.value > max.value || (seen.value == max.value && seen.time < max.time) {
-            *max = seen;
-        }
-        if seen.value < min.value || (seen.value == min.value && seen.time < min.time) {
-            *min = seen;
-        }
-    }
-}
-
 /// Dynamic and static extremes of a crossing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Envelope {
@@ -58,17 +39,21 @@ pub struct Envelope {
 
 /// Extremes of the axle loads until the last vehicle has left the bridge: what they are in the tail is none of its
 /// business, and would depend on how long that is.
-pub fn axle_loads(history: &History) -> Envelope {
-    let axles = history.axles;
-    let mut envelope = Envelope { dynamic: Extremes::none(axles), at_rest: Extremes::none(axles) };
-    for (i, loads) in history.loads.chunks_exact(axles).enumerate().take(history.last_on + 1) {
-        let (time, position) = (history.time[i], history.positions[i * axles]);
-        for (k, (&load, &static_load)) in loads.iter().zip(&history.static_loads).enumerate() {
-            envelope.dynamic.take(k, Extreme { value: load, time, position, partner: static_load });
-            envelope.at_rest.take(k, Extreme { value: static_load, time, position, partner: load });
-        }
+pub fn axle_loads(history: &History, rides: &[Ride<f64>]) -> Envelope {
+    let at = |step: f64, value: f64, partner: f64| {
+        let step = step as usize;
+        // Zeros lose their sign.
+        Extreme { value: value + 0.0, time: history.time[step], position: history.x(step, 0), partner }
+    };
+    let loads = || rides.iter().flat_map(|ride| &ride.loads).zip(&history.static_loads);
+    let start = || history.static_loads.iter().zip(&history.loads).map(|(&value, &load)| at(0.0, value, load));
+    Envelope {
+        dynamic: Extremes {
+            max: loads().map(|(watched, &at_rest)| at(watched.max_at, watched.max, at_rest)).collect(),
+            min: loads().map(|(watched, &at_rest)| at(watched.min_at, watched.min, at_rest)).collect(),
+        },
+        at_rest: Extremes { max: start().collect(), min: start().collect() },
     }
-    envelope
 }
 
 impl Extremes {

@@ -4,11 +4,20 @@ use std::ops::{Range, RangeInclusive};
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::Error;
 use crate::geometry::Geometry;
+use crate::recovery::{Place, Placed, Rows, WIDTH};
+use crate::statistics::Ride;
 use crate::step::newmark::Coordinate;
 use crate::step::stepper::State;
 use crate::step::vibration::Reach;
+use crate::stop_token::StopToken;
+use crate::stops::Positions;
+use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
 use crate::vehicle::equations::{Assembly, Sprung};
+
+/// Steps that are looked at together, with a question whether to go on behind them.
+pub const TOGETHER: usize = 1024;
 
 /// A vehicle's columns in a [`History`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -145,20 +154,73 @@ impl History {
         first..=(first..self.len()).rev().find(on).unwrap_or(first)
     }
 
-    /// Root mean square of each axle load about its static value, by that value, while its vehicle is on a bridge of this
-    /// length [m] [-].
-    pub fn load_coefficients(&self, length: f64) -> Vec<f64> {
-        let mut found = Vec::with_capacity(self.axles);
-        for Columns { axles, .. } in &self.vehicles {
-            let there = self.on_bridge(axles, length);
-            let count = there.clone().count() as f64;
-            found.extend(axles.clone().map(|k| {
-                let at_rest = self.static_loads[k];
-                let squares: f64 = there.clone().map(|i| (self.loads[i * self.axles + k] - at_rest).powi(2)).sum();
-                (squares / count).sqrt() / at_rest
-            }));
+    /// Writes down what recovery needs of a step, on a bridge that may be varied by `factors`; bodies apart.
+    pub fn write(&self, step: usize, widths: &Widths, factors: Option<&BridgeFactors<f64>>, row: &mut [f64]) {
+        let of = |all: &[f64], m: usize| all[step * self.modes + m];
+        let mode = |m: usize| Coordinate { x: of(&self.a, m), v: of(&self.a_dot, m), a: of(&self.a_ddot, m) };
+        widths.write_modes(row, self.modes, mode, factors);
+        row[widths.loads()..][..self.axles].copy_from_slice(&self.loads[step * self.axles..][..self.axles]);
+    }
+
+    /// The responses of a range of `rows` at every instant, dynamic and static, row by row.
+    pub fn responses(&self, rows: &Rows, range: Range<usize>, stop: StopToken<'_>) -> Result<[Vec<f64>; 2], Error> {
+        let count = range.len() * self.len();
+        let out = [Vec::with_capacity(count), Vec::with_capacity(count)];
+        let mut filling = Filling { history: self, rows, range, steps: 0..0, out };
+        let arch = pulp::Arch::new();
+        for from in (0..self.len()).step_by(TOGETHER) {
+            filling.steps = from..(from + TOGETHER).min(self.len());
+            arch.dispatch(&mut filling);
+            stop.check()?;
         }
-        found
+        Ok(filling.out)
+    }
+
+    /// Where the axles stand at the end of a step.
+    pub fn places(&self, step: usize, rows: &Rows, places: &mut Vec<Place>) {
+        places.clear();
+        places.extend((0..self.axles).map(|axle| rows.place(self.x(step, axle))));
+    }
+
+    /// Of each vehicle contact forces and accelerations until the last has left the bridge, and means while its own axles
+    /// are on it; `bodies` are the vertical displacements of its bodies, as rows over its coordinates.
+    pub fn rides(&self, bodies: &[Vec<Vec<f64>>], length: f64) -> Vec<Ride<f64>> {
+        let mut tape = Tape::new();
+        let rides = self.vehicles.iter().zip(bodies).map(|(Columns { axles, motion, .. }, bodies)| {
+            let widths = Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, rates: false };
+            let mut ride = Ride::nothing(axles.len(), bodies.len());
+            let (there, end) = (self.on_bridge(axles, length), self.last_on + 1);
+            let (first, last) = (*there.start(), there.end() + 1);
+            for (steps, counted) in [(0..first, false), (first..last, true), (last..end, false)] {
+                for from in steps.clone().step_by(CHUNK) {
+                    let to = steps.end.min(from + CHUNK);
+                    tape.begin(widths, from, 1);
+                    for step in from..to {
+                        let [_, row] = tape.row_mut(step);
+                        let (loads, accelerations) = row.split_at_mut(axles.len());
+                        loads.copy_from_slice(&self.loads[step * self.axles..][axles.clone()]);
+                        let motion = &self.motion[step * self.motion_width()..][motion.clone()];
+                        for (acceleration, body) in accelerations.iter_mut().zip(bodies) {
+                            let terms = body.iter().zip(motion.iter().skip(2).step_by(3));
+                            *acceleration = terms.fold(0.0, |sum, (factor, a)| sum + factor * a);
+                        }
+                    }
+                    tape.take(to - from);
+                    ride.take(&tape, &self.static_loads[axles.clone()], |step| self.left(step), counted);
+                }
+            }
+            ride
+        });
+        rides.collect()
+    }
+
+    /// How much of a whole step follows this one, until the last vehicle has left the bridge.
+    fn left(&self, step: usize) -> f64 {
+        match step + 1 {
+            next if next > self.last_on => 0.0,
+            next if next + 1 == self.len() => (self.time[next] - self.time[step]) / self.step,
+            _ => 1.0,
+        }
     }
 
     pub(crate) fn record<'a>(
@@ -221,15 +283,6 @@ impl History {
         ]
     }
 
-    /// Multiplies A and Ȧ from a row on.
-    pub(crate) fn scale(&mut self, from: usize, coordinates: f64, rates: f64) {
-        for (values, factor) in [(&mut self.a, coordinates), (&mut self.a_dot, rates)] {
-            if factor != 1.0 {
-                values[from * self.modes..].iter_mut().for_each(|value| *value *= factor);
-            }
-        }
-    }
-
     /// Makes room for this many instants.
     pub(crate) fn reserve(&mut self, instants: usize) {
         for (column, width) in self.columns() {
@@ -244,6 +297,53 @@ impl History {
             let (before, after) = column.split_at_mut(last);
             for (b, a) in before[last - width..].iter().zip(after) {
                 *a = b + fraction * (*a - b);
+            }
+        }
+    }
+}
+
+impl Positions for History {
+    fn axles(&self) -> usize {
+        self.axles
+    }
+
+    fn x(&self, step: usize, axle: usize) -> f64 {
+        self.positions[step * self.axles + axle]
+    }
+}
+
+/// Histories of responses being filled in, compiled once for each instruction set.
+struct Filling<'a> {
+    history: &'a History,
+    rows: &'a Rows,
+    range: Range<usize>,
+    steps: Range<usize>,
+    out: [Vec<f64>; 2],
+}
+
+impl pulp::WithSimd for &mut Filling<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Filling { history, rows, range, steps, out } = self;
+        let widths = Widths::of(rows, history.axles, 0);
+        let (c, mut row) = (widths.coordinates, vec![0.0; widths.all()]);
+        let (mut places, mut of_one, mut at_rest) = (Vec::new(), Vec::new(), vec![0.0; widths.used()]);
+        for step in steps.clone() {
+            history.write(step, &widths, None, &mut row);
+            history.places(step, rows, &mut places);
+            of_one.clear();
+            places.iter().for_each(|place| rows.extend_static(*place, &mut of_one));
+            write_at_rest(&of_one, &history.static_loads, &mut at_rest);
+            for (row, out) in [&row, &at_rest].into_iter().zip(&mut *out) {
+                let placed: Vec<Placed> =
+                    places.iter().zip(&row[c..]).map(|(p, load)| Placed::new(*p, *load)).collect();
+                for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
+                    let first = b * WIDTH;
+                    let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;
+                    out.extend_from_slice(&rows.block(b, &row[..c], &placed)[wanted]);
+                }
             }
         }
     }

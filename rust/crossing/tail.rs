@@ -22,8 +22,6 @@ const WORTH: [f64; 2] = [1e-2, 1e-3];
 /// Responses of the bridge in free vibration, as sums over the modal coordinates.
 #[derive(Debug, Clone)]
 pub struct FreeRows {
-    /// Which of all responses each row is.
-    pub responses: Vec<usize>,
     modes: usize,
     /// What multiplies the modal coordinates, row by row.
     factors: Vec<f64>,
@@ -74,13 +72,12 @@ impl FreeRows {
         let length = model.shapes.mesh().length();
         let deflection = model.shapes.largest_sum_of_squares() / slowest.powi(2);
         let rounding = [deflection, length, 1.0, 1.0, length].map(|largest| ROUNDING * largest);
-        FreeRows { responses: (0..rows.len()).collect(), modes, factors, rest, kinds, rounding }
+        FreeRows { modes, factors, rest, kinds, rounding }
     }
 
     /// Some of them.
     pub fn of(&self, some: impl Iterator<Item = usize> + Clone) -> Self {
         FreeRows {
-            responses: some.clone().collect(),
             modes: self.modes,
             factors: some.clone().flat_map(|r| self.row(r).0).copied().collect(),
             rest: some.clone().map(|r| self.rest[r]).collect(),
@@ -150,5 +147,21 @@ impl FreeRows {
 /// Looks at a crossing on its way.
 pub trait Watch {
     /// Whether nothing that follows what has been recorded can matter, given what free vibration can reach.
-    fn enough(&mut self, history: &mut History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error>;
+    fn enough(&mut self, history: &History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error>;
+}
+
+/// The last step of a crossing whose vehicles have all left, or stand, at the time `ended` [s], in step number `exit`, and
+/// that has a tail [s] in steps of h [s]; and how far through that step it ends.
+pub fn end(ended: f64, exit: usize, h: f64, tail: f64) -> (usize, f64) {
+    let end = ended + tail;
+    let mut last = exit.max((end / h) as usize);
+    // The first step that comes so far.
+    while last > exit && (last - 1) as f64 * h >= end - 1e-9 * h {
+        last -= 1;
+    }
+    while (last as f64) * h < end - 1e-9 * h {
+        last += 1;
+    }
+    let time = last as f64 * h;
+    (last, if time > end + 1e-9 * h { 1.0 - (time - end) / h } else { 1.0 })
 }

@@ -1,7 +1,7 @@
 //! A crossing step by step: brakes, standing vehicles, ends, and what is recorded.
 
 use crate::crossing::history::{Columns, History};
-use crate::crossing::tail::Watch;
+use crate::crossing::tail::{self, Watch};
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::geometry::free::Free;
@@ -235,15 +235,13 @@ impl<'a> TimeLoop<'a> {
         watch: &mut dyn Watch,
         stop: StopToken<'_>,
     ) -> Result<bool, Error> {
-        let time = n as f64 * self.h;
         let over = match self.settings.tail {
             Tail::Fixed(tail) => {
-                let end = end + tail;
-                let over = time >= end - 1e-9 * self.h;
-                if over && time > end + 1e-9 * self.h {
-                    self.history.shorten_last(1.0 - (time - end) / self.h);
+                let (last, fraction) = tail::end(end, exit, self.h, tail);
+                if n >= last && fraction < 1.0 {
+                    self.history.shorten_last(fraction);
                 }
-                over
+                n >= last
             }
             Tail::Free if (n - exit).is_multiple_of(LOOK_EVERY) => n - exit >= self.tail,
             Tail::Free => return Ok(false),
@@ -254,7 +252,7 @@ impl<'a> TimeLoop<'a> {
         }
         let reach = self.vibration.reach(modes);
         let free = self.settings.tail == Tail::Free;
-        self.history.settled = free && watch.enough(&mut self.history, &reach, stop)?;
+        self.history.settled = free && watch.enough(&self.history, &reach, stop)?;
         let over = over || self.history.settled;
         self.history.reach = over.then_some(reach);
         Ok(over)

@@ -4,30 +4,21 @@
 use std::ops::Range;
 
 use super::bounds::survey;
-use super::few;
 use super::placing::Shared;
-use super::selection::Selection;
-use super::statistics::{Ride, watch_moment, watch_stop};
-use super::table::{CHUNK, Chunk, PassingInfluence, Table};
-use super::tape::{Tape, Widths};
+use super::table::{Chunk, Table};
 use crate::crossing::tail::FreeRows;
-use crate::crossing::watched::Watched;
+use crate::extremes::{Seen, Watched, at_steps, at_stop, interpolate};
 use crate::lane::{Lane, Lanes, Work};
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
+use crate::selection::Selection;
+use crate::statistics::Ride;
 use crate::step::newmark::Coordinate;
 use crate::step::stepper::{State, Stepper, Unsettled};
 use crate::step::vibration::{Reach, Vibration};
 use crate::stop_token::StopToken;
-
-/// Factors of one sample's bridge on what the rows multiply.
-#[derive(Debug, Clone, Copy)]
-pub struct BridgeFactors<L> {
-    /// On A: the factor of the stiffness.
-    pub coordinates: L,
-    /// On Ȧ: how the damping matrix grows.
-    pub rates: L,
-}
+use crate::stops::PassingInfluence;
+use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
 
 /// When the lanes of a group have done.
 #[derive(Debug, Clone)]
@@ -78,33 +69,15 @@ pub struct Group<'a, L> {
     pub bodies: &'a [Vec<f64>],
 }
 
-/// What has been seen of a group.
+/// What has been found of a group.
 #[derive(Debug, Clone)]
-pub struct Seen<L> {
-    /// By row, at steps.
-    pub steps: Vec<Watched<L>>,
-    /// By row, at stops.
-    pub stops: Vec<Watched<L>>,
+pub struct Found<L> {
+    /// Extremes of the responses.
+    pub seen: Seen<L>,
     /// Contact forces and accelerations.
     pub ride: Ride<L>,
     /// What free vibration can reach after the last step of each lane.
     pub reach: Option<Reach<L>>,
-}
-
-impl<L: Lane> Seen<L> {
-    /// Nothing yet; but for a bridge that was at rest.
-    pub fn nothing(rows: usize, axles: usize, bodies: usize, table: &Table) -> Self {
-        let before = if table.first > 0 { Watched::rest() } else { Watched::nothing() };
-        let (steps, stops) = (vec![before; rows], vec![Watched::nothing(); rows]);
-        Seen { steps, stops, ride: Ride::nothing(axles, bodies), reach: None }
-    }
-
-    /// Largest and smallest of a row.
-    #[inline(always)]
-    pub fn reached(&self, row: usize) -> [L; 2] {
-        let (at_step, at_stop) = (&self.steps[row], &self.stops[row]);
-        [at_step.max.larger(at_stop.max), at_step.min.smaller(at_stop.min)]
-    }
 }
 
 /// Why a block did not come through.
@@ -129,14 +102,6 @@ pub struct Way<'a> {
     pub free: &'a FreeRows,
     /// Whether to look for trouble after every step and not only after every chunk.
     pub closely: bool,
-}
-
-impl Way<'_> {
-    /// What a step leaves for recovery.
-    fn widths(&self, bodies: usize) -> Widths {
-        let felt = self.rows.weight() == 1.0;
-        Widths { coordinates: self.rows.width(), axles: self.table.axles(), bodies, felt }
-    }
 }
 
 /// Most numbers that a group keeps of a stretch of steps.
@@ -183,32 +148,16 @@ struct Traveller<'g, 'a, L> {
 impl<L: Lane> Traveller<'_, '_, L> {
     /// Keeps what recovery needs of a step in its row.
     #[inline(always)]
-    fn keep(&self, kept: &mut [L], widths: &Widths, rates: bool, bridge: bool) {
-        let zero = L::splat(0.0);
-        let Widths { coordinates, axles, felt, .. } = *widths;
-        if !bridge {
-            kept[..coordinates].fill(zero);
-        } else if rates {
-            let modes = coordinates / 2;
-            for (m, c) in self.state.modes[..modes].iter().enumerate() {
-                kept[m] = self.group.bridge.as_ref().map_or(c.v, |b| b.rates * c.v);
-                kept[modes + m] = c.a;
-            }
-        } else {
-            for (m, c) in self.state.modes[..coordinates].iter().enumerate() {
-                kept[m] = self.group.bridge.as_ref().map_or(c.x, |b| b.coordinates * c.x);
-            }
-        }
-        if !felt {
-            kept[coordinates..][..axles].fill(zero);
-        }
-        let loads = kept[widths.loads()..][..axles].iter_mut();
-        for ((load, at_rest), increment) in loads.zip(&self.static_loads).zip(&self.state.increments) {
+    fn keep(&self, kept: &mut [L], widths: &Widths) {
+        let State { modes, increments, coordinates, .. } = &self.state;
+        widths.write_modes(kept, modes.len(), |m| modes[m], self.group.bridge.as_ref());
+        let loads = kept[widths.loads()..][..widths.axles].iter_mut();
+        for ((load, at_rest), increment) in loads.zip(&self.static_loads).zip(increments) {
             *load = *at_rest + *increment;
         }
         for (acceleration, row) in kept[widths.accelerations()..].iter_mut().zip(self.group.bodies) {
-            let terms = row.iter().zip(&self.state.coordinates);
-            *acceleration = terms.fold(zero, |sum, (factor, q)| sum + L::splat(*factor) * q.a);
+            let terms = row.iter().zip(coordinates);
+            *acceleration = terms.fold(L::splat(0.0), |sum, (factor, q)| sum + L::splat(*factor) * q.a);
         }
     }
 
@@ -287,7 +236,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
     #[inline(always)]
     fn run(self) -> Self::Output {
         let Stepping { traveller, steppers, way, stretch, place, steps, stop } = self;
-        let (rates, widths) = (way.rows.by_rates(), stretch.widths);
+        let widths = stretch.widths;
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps.clone() {
             if step > 0 {
@@ -297,7 +246,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
                 }
             }
             let [before, row] = stretch.row_mut(step);
-            traveller.keep(row, &widths, rates, place != Where::Approach);
+            traveller.keep(row, &widths);
             if place == Where::Tail {
                 traveller.end(step, [before, row]);
             }
@@ -317,7 +266,6 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 struct Swinging<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     reach: &'s mut Option<Reach<L>>,
-    rates: bool,
     stretch: &'s mut Tape<L>,
     steps: Range<usize>,
     /// The first of them in which the vehicle is not followed.
@@ -329,13 +277,13 @@ impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Swinging { traveller, reach, rates, stretch, steps, alone } = self;
+        let Swinging { traveller, reach, stretch, steps, alone } = self;
         let widths = stretch.widths;
         for step in steps {
             if step >= alone {
                 traveller.vibration.swing(&mut traveller.state.modes);
                 let [before, row] = stretch.row_mut(step);
-                traveller.keep(row, &widths, rates, true);
+                traveller.keep(row, &widths);
                 traveller.end(step, [before, row]);
             }
             let (now, last) = (L::splat(step as f64), traveller.group.ends.last);
@@ -353,7 +301,7 @@ impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
 /// The lanes being looked at whether something can still come, after a step with nobody on the bridge.
 struct Deciding<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
-    seen: &'s mut Seen<L>,
+    found: &'s mut Found<L>,
     way: &'s Way<'s>,
     step: usize,
 }
@@ -363,23 +311,23 @@ impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Deciding { traveller, seen, way, step } = self;
+        let Deciding { traveller, found, way, step } = self;
         let reach = traveller.reach();
         if traveller.group.ends.free {
             let load = traveller.static_loads.iter().fold(L::splat(0.0), |sum, load| sum + *load);
-            let settled = way.free.settled(&reach, load, |row| seen.reached(row));
+            let settled = way.free.settled(&reach, load, |row| found.seen.reached(row));
             let ending = traveller.group.ends.end(settled, step);
-            if let Some(seen) = &mut seen.reach {
-                seen.select(ending, &reach);
+            if let Some(found) = &mut found.reach {
+                found.select(ending, &reach);
             }
         }
-        seen.reach.get_or_insert(reach);
+        found.reach.get_or_insert(reach);
     }
 }
 
 /// The same chunk being looked at: all but the responses at its steps.
 struct Looking<'s, L> {
-    seen: &'s mut Seen<L>,
+    found: &'s mut Found<L>,
     way: &'s Way<'s>,
     static_loads: &'s [L],
     ends: &'s Ends<L>,
@@ -397,24 +345,25 @@ impl<L: Lane> Work for Looking<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Looking { seen, way, ends, place, steps, stop, stretch, .. } = self;
+        let Looking { found, way, ends, place, steps, stop, stretch, between, .. } = self;
+        let Found { seen, ride, .. } = found;
         let widths = stretch.widths;
         let last = way.table.path.steps;
         stretch.take(steps.len());
         // What becomes of vehicles behind the bridge is none of its business.
         if place != Where::Tail {
             let left = |step: usize| L::splat(if step < last { 1.0 } else { 0.0 });
-            seen.ride.take(stretch, self.static_loads, left, place == Where::Bridge);
+            ride.take(stretch, self.static_loads, left, place == Where::Bridge);
         }
         if place == Where::Approach {
             return;
         }
-        let jumps = if way.rows.by_rates() { widths.coordinates / 2 } else { widths.coordinates };
         while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
             let sides = [stretch.row(next.step - 1), stretch.row(next.step)];
             let before = (next.step > last).then(|| seen.stops.clone());
             let moment = way.table.moment(*stop, way.rows, way.look, self.moment);
-            watch_stop(&mut seen.stops, way.look, (next, *stop, moment), sides, &widths, jumps, self.between);
+            interpolate(next, sides, &widths, between);
+            at_stop(&mut seen.stops, way.look, (next, *stop, moment), between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
             for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
@@ -454,7 +403,7 @@ fn look_at_steps<L: Lanes>(
     let Way { table, rows, look, .. } = *way;
     let steps = stretch.from..stretch.from + stretch.steps;
     if L::SAMPLES == 1 && !table.laid_out {
-        return few::survey(watched, rows, look, stretch, if loaded { table.places(steps) } else { &[] });
+        return at_steps(watched, rows, look, stretch, if loaded { table.places(steps) } else { &[] });
     }
     let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
     L::dispatch(Surveying { watched, look, stretch, chunks, glanced });
@@ -467,14 +416,19 @@ pub fn march<L: Lanes>(
     steppers: &mut Steppers<L>,
     scratch: &mut Scratch<L>,
     stop: StopToken<'_>,
-) -> Result<Seen<L>, Trouble> {
+) -> Result<Found<L>, Trouble> {
     let Way { table, rows, look, .. } = *way;
     let steps = table.path.steps;
     let bodies = group.bodies.len();
-    let widths = way.widths(bodies);
+    let widths = Widths::of(rows, table.axles(), bodies);
     let longest = longest(&widths);
     let Scratch { stretch, glanced, between, moment, chunks: own_chunks } = scratch;
-    let mut seen = Seen::nothing(look.rows.len(), table.axles(), bodies, table);
+    let mut found = Found {
+        // The bridge is at rest until an axle comes on to it.
+        seen: Seen::beginning(look.rows.len(), table.first > 0),
+        ride: Ride::nothing(table.axles(), bodies),
+        reach: None,
+    };
     let speed = group.geometry.speed;
     let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
     let static_loads = steppers.bridge.static_loads();
@@ -482,7 +436,7 @@ pub fn march<L: Lanes>(
     let mut traveller = Traveller { group, state, static_loads, vibration };
     stretch.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
-    traveller.keep(stretch.row_mut(0)[0], &widths, rows.by_rates(), table.first == 0);
+    traveller.keep(stretch.row_mut(0)[0], &widths);
     let (mut next, mut from) = (0, 0);
     while from <= traveller.group.ends.latest {
         let (place, end, most) = if from < table.first {
@@ -510,12 +464,12 @@ pub fn march<L: Lanes>(
             L::dispatch(stepping)?;
         }
         if place == Where::Tail {
-            let (reach, rates) = (&mut seen.reach, rows.by_rates());
-            L::dispatch(Swinging { traveller: &mut traveller, reach, rates, stretch, steps: from..to, alone });
+            let reach = &mut found.reach;
+            L::dispatch(Swinging { traveller: &mut traveller, reach, stretch, steps: from..to, alone });
             stop.check().map_err(|_| Trouble::Interrupted)?;
         }
         let looking = Looking {
-            seen: &mut seen,
+            found: &mut found,
             way,
             static_loads: &traveller.static_loads,
             ends: &traveller.group.ends,
@@ -531,24 +485,24 @@ pub fn march<L: Lanes>(
             // On the approach the bridge is at rest.
             if place != Where::Approach {
                 let loaded = place == Where::Bridge;
-                look_at_steps(way, &mut seen.steps, stretch, loaded, (glanced, own_chunks));
+                look_at_steps(way, &mut found.seen.steps, stretch, loaded, (glanced, own_chunks));
             }
             stretch.go_on();
             if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
-                L::dispatch(Deciding { traveller: &mut traveller, seen: &mut seen, way, step: to - 1 });
+                L::dispatch(Deciding { traveller: &mut traveller, found: &mut found, way, step: to - 1 });
             }
         }
         from = to;
     }
-    Ok(seen)
+    Ok(found)
 }
 
 /// How far free vibration can exceed what has been seen, being looked at; not a number where it is not known.
 pub struct Growing<'s, L> {
     /// The rows.
     pub free: &'s FreeRows,
-    /// What has been seen.
-    pub seen: &'s Seen<L>,
+    /// What has been found.
+    pub found: &'s Found<L>,
 }
 
 impl<L: Lane> Work for Growing<'_, L> {
@@ -556,8 +510,8 @@ impl<L: Lane> Work for Growing<'_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        match &self.seen.reach {
-            Some(reach) => self.free.growth(reach, |row| self.seen.reached(row)),
+        match &self.found.reach {
+            Some(reach) => self.free.growth(reach, |row| self.found.seen.reached(row)),
             None => [L::splat(f64::NAN); 2],
         }
     }
@@ -584,24 +538,11 @@ impl<L: Lane, F: Fn(usize) -> u64> Work for Drawing<'_, L, F> {
     }
 }
 
-/// Ā_st under loads, from what loads of one at each axle make of it, and the loads behind it.
-#[inline(always)]
-fn combine<L: Lane>(of_one: &[f64], loads: &[L], row: &mut [L]) {
-    let (coordinates, behind) = row.split_at_mut(row.len() - loads.len());
-    behind.copy_from_slice(loads);
-    let width = coordinates.len();
-    for (i, coordinate) in coordinates.iter_mut().enumerate() {
-        let terms = of_one.chunks_exact(width).zip(loads);
-        *coordinate = terms.fold(L::splat(0.0), |sum, (shapes, load)| sum + *load * L::splat(shapes[i]));
-    }
-}
-
 /// The static extremes under loads that differ from sample to sample.
 pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
     let Way { table, rows, look, .. } = *way;
-    let widths = Widths { felt: true, ..way.widths(0) };
-    let (width, axles) = (widths.coordinates, widths.axles);
-    let mut seen = Seen::nothing(look.rows.len(), 0, 0, table);
+    let widths = Widths { felt: true, ..Widths::of(rows, table.axles(), 0) };
+    let mut seen = Seen::beginning(look.rows.len(), table.first > 0);
     let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Tape::new());
     let longest = longest(&widths);
     for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
@@ -611,11 +552,11 @@ pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
         look_at_steps(way, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
     }
     let mut own_moment = PassingInfluence::default();
-    let mut then = vec![L::splat(0.0); width + axles];
+    let mut then = vec![L::splat(0.0); widths.used()];
     for (number, stop) in table.stops.iter().enumerate() {
         let moment = table.moment(number, rows, look, &mut own_moment);
-        combine(&moment.statics, loads, &mut then);
-        watch_moment(&mut seen.stops, look, (stop, number, moment), &then);
+        write_at_rest(&moment.statics, loads, &mut then);
+        at_stop(&mut seen.stops, look, (stop, number, moment), &then);
     }
     seen
 }
@@ -635,13 +576,10 @@ impl<L: Lane> Work for Resting<'_, L> {
     fn run(self) {
         let Resting { way, loads, steps, stretch } = self;
         let mut scratch = Vec::new();
-        for from in steps.clone().step_by(CHUNK) {
-            let to = steps.end.min(from + CHUNK);
-            for step in from..to {
-                let [_, row] = stretch.row_mut(step);
-                combine(way.table.statics(step, way.rows, &mut scratch), loads, row);
-            }
-            stretch.take(to - from);
+        for step in steps.clone() {
+            let [_, row] = stretch.row_mut(step);
+            write_at_rest(way.table.statics(step, way.rows, &mut scratch), loads, row);
         }
+        stretch.take_all(steps.len());
     }
 }

@@ -5,12 +5,11 @@
 //! a glance at one step of every chunk finds values that the extremes must reach, and only those chunks are looked at
 //! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
 
-use super::selection::Row;
-use super::statistics::value;
-use super::table::{Chunk, PART, PARTS, middle};
-use super::tape::Tape;
-use crate::crossing::watched::Watched;
+use super::table::{Chunk, middle};
+use crate::extremes::{Watched, value};
 use crate::lane::Lane;
+use crate::selection::Row;
+use crate::tape::{PART, PARTS, Tape};
 
 /// Looks for the extremes of every response at the steps of a stretch: `chunks` of the influence of the loads, none where
 /// there is no axle on the bridge. `glanced` is scratch.

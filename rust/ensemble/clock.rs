@@ -5,8 +5,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::results;
-use super::table::{self, Advance, Passing, SIDES, Stop};
+use super::table::{Advance, passings};
+use crate::crossing::tail::end;
+use crate::extremes::Instant;
 use crate::passage::step_length::MAX_STEPS;
+use crate::stops::{Passing, SIDES, Stop};
 
 /// The steps of one kind of march.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,7 +56,7 @@ impl Clock {
     /// That of one march.
     pub fn of(&self, march: u32) -> Hands<'_> {
         let pace = self.paces.get(march as usize);
-        let passings = pace.map_or(Vec::new(), |pace| table::passings(&pace.path, &self.places));
+        let passings = pace.map_or(Vec::new(), |pace| passings(&pace.path, &self.places));
         Hands { march, tail: self.tail, path: pace.map(|pace| &pace.path), passings }
     }
 
@@ -95,15 +98,15 @@ impl Hands<'_> {
         let Some(path) = self.path else { return (f64::NAN, f64::NAN) };
         let h = path.advance / speed;
         let position = |step: usize| path.advance * step as f64 + path.start;
-        match results::stop_or_step(instant) {
-            Ok(stop) => self.passings.get(stop / SIDES).map_or((f64::NAN, f64::NAN), |passing| {
+        match results::decoded(instant) {
+            Instant::Stop(stop) => self.passings.get(stop / SIDES).map_or((f64::NAN, f64::NAN), |passing| {
                 (Stop::between(passing.step, passing.fraction, h), passing.position)
             }),
-            Err(step) => {
+            Instant::Step(step) => {
                 let (time, there) = (step as f64 * h, position(step));
                 // One that is not given ends with a step.
                 let Some(tail) = self.tail else { return (time, there) };
-                let (last, fraction) = table::end(path.steps, h, tail);
+                let (last, fraction) = end(path.steps as f64 * h, path.steps, h, tail);
                 if step < last || fraction == 1.0 {
                     return (time, there);
                 }

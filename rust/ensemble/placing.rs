@@ -7,6 +7,7 @@ use crate::lane::Lane;
 use crate::road::b_spline::weighted;
 use crate::step::newmark::Coordinate;
 use crate::step::stepper::Stepper;
+use crate::stops::Positions;
 
 /// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
 pub const COUPLED: usize = 1 << 21;

@@ -3,6 +3,9 @@
 use std::ops::Range;
 
 use crate::error::Error;
+use crate::extremes::Instant;
+use crate::lane::Lane;
+use crate::statistics::Ride;
 
 /// Where everything stands in a sample's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,21 +118,27 @@ impl Layout {
 pub struct Record<'a> {
     /// Numbers, after [`Layout::range`].
     pub numbers: &'a mut [f64],
-    /// Instants, after [`Layout::instants`]; see [`instant_of_stop`].
+    /// Instants, after [`Layout::instants`]; see [`encoded`].
     pub instants: &'a mut [u32],
 }
 
 /// The bit that tells a moment between two steps from a step.
 const STOP: u32 = 1 << 31;
 
-/// The instant at which an axle passes: a stop of the table.
-pub fn instant_of_stop(stop: usize) -> u32 {
-    STOP | stop as u32
+/// An instant as a number.
+pub fn encoded(instant: Instant) -> u32 {
+    match instant {
+        Instant::Step(step) => step as u32,
+        Instant::Stop(stop) => STOP | stop as u32,
+    }
 }
 
-/// The stop, if the instant is one, or else the step.
-pub fn stop_or_step(instant: u32) -> Result<usize, usize> {
-    if instant & STOP == 0 { Err(instant as usize) } else { Ok((instant & !STOP) as usize) }
+/// The instant of a number.
+pub fn decoded(instant: u32) -> Instant {
+    match instant & STOP {
+        0 => Instant::Step(instant as usize),
+        _ => Instant::Stop((instant & !STOP) as usize),
+    }
 }
 
 impl Record<'_> {
@@ -137,6 +146,33 @@ impl Record<'_> {
     pub fn forget(&mut self) {
         self.numbers.fill(f64::NAN);
         self.instants.fill(0);
+    }
+
+    /// Writes down the ride of a vehicle in one lane, in steps of h [s]; its axles and bodies come after so many others.
+    pub fn write_ride<L: Lane>(
+        &mut self,
+        layout: &Layout,
+        ride: &Ride<L>,
+        lane: usize,
+        [axles, bodies]: [usize; 2],
+        static_loads: &[f64],
+        h: f64,
+    ) {
+        let column = |column: Column| layout.range(column).start;
+        for (own, &static_load) in static_loads.iter().enumerate() {
+            let (k, watched) = (axles + own, &ride.loads[own]);
+            for (side, value) in [watched.max, watched.min].into_iter().enumerate() {
+                self.numbers[column(Column::Loads) + side * layout.axles + k] = value.get(lane) + 0.0;
+            }
+            self.numbers[column(Column::LoadCoefficients) + k] = ride.load_coefficient(own, lane, static_load);
+            self.numbers[column(Column::Aloft) + k] = ride.aloft[own].get(lane) * h;
+            self.instants[2 * (layout.responses + layout.axles) + k] = ride.lift_offs[own].get(lane) as u32;
+        }
+        for own in 0..ride.accelerations.len() {
+            let b = bodies + own;
+            self.numbers[column(Column::Accelerations) + b] = ride.accelerations[own].get(lane);
+            self.numbers[column(Column::Vibrations) + b] = ride.vibration(own, lane);
+        }
     }
 
     /// Fingerprint of the rows, the same on every machine.

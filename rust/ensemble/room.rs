@@ -5,11 +5,13 @@ use super::clock::Pace;
 use super::placing::COUPLED;
 use super::sample::Samples;
 use super::study::{March, Study};
-use super::table::{Below, CHUNK, PARTS, READY, Stop};
+use super::table::{Below, READY};
 use super::workers::Workers;
 use crate::error::Error;
 use crate::memory;
 use crate::recovery::Place;
+use crate::stops::Stop;
+use crate::tape::{CHUNK, PARTS};
 
 /// What there is room for.
 pub struct Room<'a> {
@@ -88,8 +90,8 @@ impl<'a> Room<'a> {
         let (width, rows) = (study.analysis.rows.width() as f64, study.look.rows.len() as f64);
         let mut numbers = rows * axles + width * axles;
         if laid_out {
-            let asked: usize = study.look.places.iter().map(|place| study.look.asked[place.2].len()).sum();
-            let stops = 2.0 * axles * study.look.places.len() as f64;
+            let asked: usize = study.look.marks.iter().map(|mark| study.look.asked[mark.asked].len()).sum();
+            let stops = 2.0 * axles * study.look.marks.len() as f64;
             numbers += steps * axles * width + stops * axles * width + 2.0 * axles * axles * asked as f64;
             // Of the influence on each row, its middle, and its bounds over all steps of a chunk and over each part.
             let influence = rows * axles * (CHUNK + 1 + 2 + 2 * PARTS) as f64;
@@ -104,7 +106,7 @@ impl<'a> Room<'a> {
     /// Bytes of the stops of a kind.
     fn of_stops(&self, kind: usize) -> f64 {
         let axles = self.study.vehicle(kind).assembly().contacts.len();
-        (2 * axles * self.study.look.places.len() * size_of::<Stop>()) as f64
+        (2 * axles * self.study.look.marks.len() * size_of::<Stop>()) as f64
     }
 
     /// Bytes that a worker takes in any case: its stack, the steps that a group keeps, and their roads.

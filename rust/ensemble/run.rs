@@ -148,7 +148,7 @@ impl Study {
         }
         let paces =
             marches.iter().filter(|_| self.shares).map(|&march| Pace { path: self.path(march), halvings: march.1 });
-        let places = self.look.places.iter().map(|place| place.1).collect();
+        let places = self.look.marks.iter().map(|mark| mark.x).collect();
         let clock = Clock::new(self.settings.tail.seconds(), places, paces.collect());
         let shelves = shelves.into_iter().filter(|_| !layout.own_statics);
         let at_rest = shelves.map(|shelf| shelf.leaves(&layout)).collect();

@@ -2,16 +2,17 @@
 
 use std::sync::OnceLock;
 
-use super::block::{BridgeFactors, Drawing, Ends, Group, Growing, Scratch, Seen, Steppers, Trouble, Way, march, rest};
+use super::block::{Drawing, Ends, Found, Group, Growing, Scratch, Steppers, Trouble, Way, march, rest};
 use super::placing::{Couplings, Shared};
-use super::results::{Column, Failure, Layout, Record, instant_of_stop};
+use super::results::{Column, Failure, Layout, Record, encoded};
 use super::sample::Samples;
 use super::single::{Scaled, passages};
 use super::study::{Kind, Study};
-use super::table::{Table, end};
-use crate::crossing::watched::Watched;
+use super::table::Table;
+use crate::crossing::tail;
 use crate::damping::ModalDamping;
 use crate::error::Error;
+use crate::extremes::Seen;
 use crate::lane::dispatch::InLanes;
 use crate::lane::{Lane, Lanes};
 use crate::passage::settings::{Settings, Tail};
@@ -20,33 +21,19 @@ use crate::step::stepper::{Scheme, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vibration::most_steps;
 use crate::stop_token::StopToken;
+use crate::stops::Positions;
+use crate::tape::BridgeFactors;
 
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.
 pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
     let way = Way { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely: false };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
-    let seen = rest::<f64>(&way, &loads);
+    let seen = &rest::<f64>(&way, &loads);
     let row_of = &study.look.row_of;
-    let largest = row_of.iter().map(|&row| extremes(table, 1.0, &seen, row, 0)[0].0);
-    let smallest = row_of.iter().map(|&row| extremes(table, 1.0, &seen, row, 0)[1].0);
-    largest.chain(smallest).collect()
-}
-
-/// Largest and smallest of a row in one lane in steps of h [s], each with its instant.
-fn extremes<L: Lane>(table: &Table, h: f64, seen: &Seen<L>, row: usize, lane: usize) -> [(f64, u32); 2] {
-    let pick = |of: fn(&Watched<L>) -> (L, L), sense: f64| {
-        let number = |watched: &Watched<L>| {
-            let (value, at) = of(watched);
-            (value.get(lane), at.get(lane))
-        };
-        let ((at_step, step), (at_stop, stop)) = (number(&seen.steps[row]), number(&seen.stops[row]));
-        // At a stop and at a step alike, the earlier counts, and if they are one instant the stop.
-        let better = sense * at_stop > sense * at_step;
-        let earlier = at_stop == at_step && table.stops[stop as usize].when(h) <= step * h;
-        if better || earlier { (at_stop + 0.0, instant_of_stop(stop as usize)) } else { (at_step + 0.0, step as u32) }
-    };
-    [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
+    let side =
+        |side: usize| row_of.iter().map(move |&row| seen.sides(row, 0, |instant| table.when(instant, 1.0))[side].0);
+    side(0).chain(side(1)).collect()
 }
 
 /// What samples that march together share.
@@ -91,7 +78,7 @@ impl InLanes for Part<'_, '_> {
 
 /// What has been seen of a group.
 struct Marched<L> {
-    seen: Seen<L>,
+    found: Found<L>,
     /// Of the static responses, if they differ from sample to sample.
     at_rest: Option<Seen<L>>,
     /// How far free vibration can exceed it, and where: see [`crate::crossing::tail::FreeRows::growth`].
@@ -288,7 +275,10 @@ impl Task<'_> {
             L::dispatch(Drawing { synthesis, seed: *seed, sample, road: roads });
         }
         let ended = |lane: usize| match study.settings.tail {
-            Tail::Fixed(tail) => end(table.path.steps, self.step(sample_of(lane)), tail),
+            Tail::Fixed(tail) => {
+                let (steps, h) = (table.path.steps, self.step(sample_of(lane)));
+                tail::end(steps as f64 * h, steps, h, tail)
+            }
             Tail::Free => (table.path.steps + self.most(sample_of(lane), ready_of(lane)), 1.0),
         };
         let ends = Ends {
@@ -308,14 +298,14 @@ impl Task<'_> {
         });
         let geometry = Shared::new(table, roads, speed, couplings);
         let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
-        let seen = march(&way, &mut group, steppers, scratch, stop)?;
+        let found = march(&way, &mut group, steppers, scratch, stop)?;
         let at_rest = self.layout.own_statics.then(|| {
             let of = |k: usize| L::from_fn(|lane| ready_of(lane).static_loads[k]);
             let loads: Vec<L> = (0..table.axles()).map(of).collect();
             rest(&way, &loads)
         });
-        let growth = L::dispatch(Growing { free: &study.free, seen: &seen });
-        Ok(Marched { seen, at_rest, growth, last: group.ends.last })
+        let growth = L::dispatch(Growing { free: &study.free, found: &found });
+        Ok(Marched { found, at_rest, growth, last: group.ends.last })
     }
 
     /// Writes down what was seen of a sample, and says whether all of it is finite.
@@ -335,7 +325,7 @@ impl Task<'_> {
 
     fn write_numbers<L: Lane>(
         &self,
-        Marched { seen, at_rest, growth, last }: &Marched<L>,
+        Marched { found, at_rest, growth, last }: &Marched<L>,
         lane: usize,
         sample: usize,
         (stiffness, static_loads): (f64, &[f64]),
@@ -345,16 +335,17 @@ impl Task<'_> {
         let responses = layout.responses;
         record.forget();
         let h = self.step(sample);
+        let when = |instant| self.table.when(instant, h);
         let start = layout.range(Column::Responses).start;
         for (place, (&row, &deflection)) in look.row_of.iter().zip(&look.deflections).enumerate() {
             let k = if deflection { stiffness } else { 1.0 };
-            for (side, (value, instant)) in extremes(self.table, h, seen, row, lane).into_iter().enumerate() {
+            for (side, (value, instant)) in found.seen.sides(row, lane, when).into_iter().enumerate() {
                 record.numbers[start + side * responses + place] = value / k;
-                record.instants[side * responses + place] = instant;
+                record.instants[side * responses + place] = encoded(instant);
             }
             if let Some(at_rest) = at_rest {
                 let start = layout.range(Column::Statics).start;
-                for (side, (value, _)) in extremes(self.table, h, at_rest, row, lane).into_iter().enumerate() {
+                for (side, (value, _)) in at_rest.sides(row, lane, when).into_iter().enumerate() {
                     record.numbers[start + side * responses + place] = value / k;
                 }
             }
@@ -366,25 +357,11 @@ impl Task<'_> {
         };
         let [growth, side] = growth.map(|each| each.get(lane));
         record.numbers[start..start + 3].copy_from_slice(&[tail, growth, look.side(side)]);
-        let ride = &seen.ride;
-        let count = (self.table.path.steps + 1 - self.table.first) as f64;
-        let column = |column: Column| layout.range(column).start;
-        for (k, static_load) in static_loads.iter().enumerate() {
-            let watched = &ride.loads[k];
-            for (side, (value, at)) in
-                [(watched.max, watched.max_at), (watched.min, watched.min_at)].into_iter().enumerate()
-            {
-                record.numbers[column(Column::Loads) + side * layout.axles + k] = value.get(lane) + 0.0;
+        record.write_ride(layout, &found.ride, lane, [0, 0], static_loads, h);
+        for (k, watched) in found.ride.loads.iter().enumerate() {
+            for (side, at) in [watched.max_at, watched.min_at].into_iter().enumerate() {
                 record.instants[2 * responses + side * layout.axles + k] = at.get(lane) as u32;
             }
-            let coefficient = (ride.deviations[k].get(lane) / count).sqrt() / static_load;
-            record.numbers[column(Column::LoadCoefficients) + k] = coefficient;
-            record.numbers[column(Column::Aloft) + k] = ride.aloft[k].get(lane) * h;
-            record.instants[2 * (responses + layout.axles) + k] = ride.lift_offs[k].get(lane) as u32;
-        }
-        for b in 0..ride.accelerations.len() {
-            record.numbers[column(Column::Accelerations) + b] = ride.accelerations[b].get(lane);
-            record.numbers[column(Column::Vibrations) + b] = (ride.squares[b].get(lane) / count).sqrt();
         }
     }
 }

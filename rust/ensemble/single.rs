@@ -7,9 +7,8 @@ use super::results::{Column, Layout, Record};
 use super::sample::{Parameter, Samples};
 use super::study::Study;
 use crate::crossing;
-use crate::crossing::analysis::Watching;
 use crate::crossing::envelope::{Extremes, axle_loads};
-use crate::crossing::history::History;
+use crate::crossing::observer::Observer;
 use crate::damping::ModalDamping;
 use crate::error::Error;
 use crate::modal_bridge::ModalBridge;
@@ -17,6 +16,7 @@ use crate::passage::Passage;
 use crate::passage::settings::Settings;
 use crate::road::Road;
 use crate::stop_token::StopToken;
+use crate::tape::BridgeFactors;
 use crate::vehicle::Vehicle;
 
 /// The bridge of a sample, and what its rows are to multiply A and Ȧ by.
@@ -105,90 +105,63 @@ pub fn cross(
             &own_model
         }
     };
-    let factors = scaled.as_ref().map_or([1.0; 2], |scaled| [scaled.stiffness, scaled.rates]);
-    let mut watching = Watching::new(&study.analysis, &study.free, factors);
-    let mut history = crossing::cross(model, &passages, &settings, &mut watching, stop)?;
-    let (_, envelope) = watching.conclude(&mut history, stop)?;
-    let loads = axle_loads(&history).dynamic;
+    let factors = scaled.as_ref().map(|s| BridgeFactors { coordinates: s.stiffness, rates: s.rates });
+    let mut observer = Observer::new(&study.analysis.rows, &study.look, &study.free, factors);
+    let history = crossing::cross(model, &passages, &settings, &mut observer, stop)?;
+    let envelope = observer.conclude(&history, stop)?;
+    let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
+    let rides = history.rides(&bodies, study.analysis.rows.mesh().length());
+    let loads = axle_loads(&history, &rides);
     let stiffness = scaled.map_or(1.0, |scaled| scaled.stiffness);
-    let chosen: Vec<(usize, f64)> = (study.look.chosen.iter().zip(&study.look.deflections))
-        .map(|(&r, &d)| (r, if d { stiffness } else { 1.0 }))
-        .collect();
-    record.numbers.fill(f64::NAN);
-    record.instants.fill(0);
-    let mut put = |column: Column, offset: usize, values: &mut dyn Iterator<Item = f64>| {
-        let range = layout.range(column);
-        record.numbers[range.start + offset..range.end].iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
-    };
+    let shrink = |place: usize| if study.look.deflections[place] { stiffness } else { 1.0 };
+    record.forget();
     let last = history.len() - 1;
     let [growth, side] = match &history.reach {
         None => [f64::NAN; 2],
         Some(reach) => {
             let seen = |row: usize| {
-                let r = study.free.responses[row];
-                [envelope.dynamic.max[r].value, envelope.dynamic.min[r].value]
+                let place = study.look.row_of.iter().position(|&own| own == row).unwrap_or_default();
+                [envelope.dynamic.max[place].value, envelope.dynamic.min[place].value]
             };
-            study.free.growth(&reach.clone().scaled(factors[0], factors[1]), seen)
+            let reach = reach.clone();
+            study.free.growth(&factors.map_or(reach.clone(), |f| reach.scaled(f.coordinates, f.rates)), seen)
         }
+    };
+    let (mut axles, mut bodies) = (0, 0);
+    for ride in &rides {
+        record.write_ride(
+            layout,
+            ride,
+            0,
+            [axles, bodies],
+            &history.static_loads[axles..][..ride.loads.len()],
+            history.step,
+        );
+        (axles, bodies) = (axles + ride.loads.len(), bodies + ride.accelerations.len());
+    }
+    let mut put = |column: Column, offset: usize, values: &mut dyn Iterator<Item = f64>| {
+        let range = layout.range(column);
+        record.numbers[range.start + offset..range.end].iter_mut().zip(values).for_each(|(slot, value)| *slot = value);
     };
     put(Column::Tail, 0, &mut [history.time[last] - history.ended, growth, study.look.side(side)].into_iter());
     let (r, a) = (layout.responses, layout.axles);
-    let sides = |extremes: &Extremes| [extremes.max.clone(), extremes.min.clone()];
-    for (side, extremes) in sides(&envelope.dynamic).iter().enumerate() {
-        put(Column::Responses, side * r, &mut chosen.iter().map(|&(r, k)| extremes[r].value / k));
-        put(Column::Times, side * r, &mut chosen.iter().map(|&(r, _)| extremes[r].time));
-        put(Column::Positions, side * r, &mut chosen.iter().map(|&(r, _)| extremes[r].position));
+    let sides = |envelope: Extremes| [envelope.max, envelope.min].into_iter().enumerate();
+    for (side, extremes) in sides(envelope.dynamic) {
+        put(Column::Responses, side * r, &mut extremes.iter().enumerate().map(|(i, e)| e.value / shrink(i)));
+        put(Column::Times, side * r, &mut extremes.iter().map(|e| e.time));
+        put(Column::Positions, side * r, &mut extremes.iter().map(|e| e.position));
     }
-    for (side, extremes) in sides(&envelope.at_rest).iter().enumerate() {
-        put(Column::Statics, side * r, &mut chosen.iter().map(|&(r, k)| extremes[r].value / k));
+    for (side, extremes) in sides(envelope.at_rest) {
+        put(Column::Statics, side * r, &mut extremes.iter().enumerate().map(|(i, e)| e.value / shrink(i)));
     }
-    for (side, extremes) in sides(&loads).iter().enumerate() {
-        put(Column::Loads, side * a, &mut extremes.iter().map(|e| e.value));
+    for (side, extremes) in sides(loads.dynamic) {
         put(Column::Times, 2 * r + side * a, &mut extremes.iter().map(|e| e.time));
         put(Column::Positions, 2 * r + side * a, &mut extremes.iter().map(|e| e.position));
     }
-    ride(&history, study.analysis.rows.mesh().length(), &passages, layout, &mut put, &mut record.instants[..]);
-    let bodies = passages.iter().map(|passage| passage.vehicle.bodies().len()).sum();
     if !layout.is_finite(record.numbers, history.axles, bodies) {
         // No step shows it, but sums of squares do.
         let (time, position) = (history.time[last], history.positions[last * history.axles]);
         return Err(Error::NotFinite { step: last, time, position });
     }
     Ok(())
-}
-
-/// Contact forces and accelerations until the last vehicle has left the bridge; means while their own is on it.
-fn ride(
-    history: &History,
-    length: f64,
-    passages: &[Passage],
-    layout: &Layout,
-    put: &mut dyn FnMut(Column, usize, &mut dyn Iterator<Item = f64>),
-    instants: &mut [u32],
-) {
-    let axles = history.axles;
-    put(Column::LoadCoefficients, 0, &mut history.load_coefficients(length).into_iter());
-    let lifts = history.lift_offs();
-    let of = |k: usize| lifts.iter().filter(move |lift| lift.axle == k);
-    put(Column::Aloft, 0, &mut (0..axles).map(|k| of(k).map(|lift| lift.to - lift.from).sum()));
-    let counts = instants.len() - layout.axles;
-    for (k, slot) in instants[counts..counts + axles].iter_mut().enumerate() {
-        *slot = of(k).count() as u32;
-    }
-    let mut body = 0;
-    for (columns, passage) in history.vehicles.iter().zip(passages) {
-        let there = history.on_bridge(&columns.axles, length);
-        let count = there.clone().count() as f64;
-        for [heave, _] in &passage.vehicle.assembly().bodies {
-            let acceleration = |i: usize| -> f64 {
-                let row = &history.motion[i * history.motion_width()..][columns.motion.clone()];
-                heave.iter().zip(row.iter().skip(2).step_by(3)).map(|(b, a)| b * a).sum()
-            };
-            let largest = (0..=history.last_on).fold(0.0_f64, |m, i| m.max(acceleration(i).abs()));
-            let squares: f64 = there.clone().map(|i| acceleration(i).powi(2)).sum();
-            put(Column::Accelerations, body, &mut std::iter::once(largest));
-            put(Column::Vibrations, body, &mut std::iter::once((squares / count).sqrt()));
-            body += 1;
-        }
-    }
 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::results::{Failure, Layout};
 use super::sample::{Parameter, Samples};
-use super::selection::Selection;
 use super::table::{Advance, StudyRoad, Table};
 use crate::crossing::analysis::Analysis;
 use crate::crossing::tail::FreeRows;
@@ -16,6 +15,7 @@ use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{MAX_STEPS, Steps};
 use crate::passage::{Direction, Drive, Passage};
 use crate::road::random::Synthesis;
+use crate::selection::Selection;
 use crate::statics::influence::Quantity;
 use crate::vehicle::body::BuildUp;
 use crate::vehicle::equations::ContactLaw;
@@ -121,11 +121,10 @@ impl Plan {
         if look.chosen.is_empty() {
             return Err(Error::input("quantities", "[]", "at least one response must be looked at"));
         }
-        let free = analysis.free.of(look.rows.iter().map(|row| row.response));
+        let free = analysis.free.of(look.rows.iter().map(|row| analysis.look.row_of[row.response]));
         let mut study = Study { analysis, kinds: Vec::new(), settings, own, advance, look, free, shares };
         for passages in kinds {
-            let bodies = passages[0].vehicle.assembly().bodies.iter();
-            let bodies = bodies.map(|[heave, _]| heave.iter().copied().collect()).collect();
+            let bodies = passages[0].vehicle.heaves();
             study.kinds.push(Kind { passages, bodies });
         }
         for kind in 0..study.kinds.len() {
@@ -247,7 +246,7 @@ impl Study {
 
     /// The geometry of a kind whose step is halved so many times, laid out for many samples or not.
     pub fn table(&self, march: March, laid_out: bool) -> Table {
-        let Analysis { model, rows, responses, .. } = &*self.analysis;
+        let Analysis { model, rows, .. } = &*self.analysis;
         let (vehicle, length) = (self.vehicle(march.0), model.shapes.mesh().length());
         let pavement = Pavement {
             road: self.settings.road.off(self.settings.road.datum(-self.settings.approach, length)),
@@ -258,7 +257,7 @@ impl Study {
         };
         let slopes = !vehicle.assembly().contacts.iter().all(|contact| contact.law.is_plain());
         let ground = StudyRoad { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
-        Table::new(self.path(march), &model.shapes, (rows, responses, &self.look), slopes, ground, laid_out)
+        Table::new(self.path(march), &model.shapes, (rows, &self.look), slopes, ground, laid_out)
     }
 
     /// How often the step of each sample must be halved: a function of the sample alone. Samples that would take too many

@@ -5,23 +5,16 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::selection::Selection;
+use crate::extremes::Instant;
 use crate::geometry::Surface;
 use crate::geometry::pavement::{Pavement, Share};
 use crate::modal_bridge::ModeShapes;
 use crate::recovery::{Place, Rows};
 use crate::road::b_spline::Taps;
 use crate::road::random::Synthesis;
-use crate::statics::influence::Responses;
-
-/// Steps whose responses are bounded together.
-pub const CHUNK: usize = 32;
-
-/// Steps of a part of a chunk.
-pub const PART: usize = 8;
-
-/// Parts of a chunk.
-pub const PARTS: usize = CHUNK / PART;
+use crate::selection::Selection;
+use crate::stops::{Passing, PassingInfluence, Positions, Stop};
+use crate::tape::{CHUNK, PART, PARTS};
 
 /// The step of a chunk of so many that is looked at first.
 pub fn middle(count: usize) -> usize {
@@ -60,49 +53,6 @@ pub enum Below {
     },
 }
 
-/// A moment between two steps at which extremes must be looked for: an axle on a section or on an end of the bridge.
-#[derive(Debug, Clone)]
-pub struct Stop {
-    /// The step at whose end it has been passed.
-    pub step: usize,
-    /// How far through that step.
-    pub fraction: f64,
-    /// The axle that passes.
-    pub axle: usize,
-    /// Where it stands.
-    side: Place,
-    /// If the load of that axle and the modal accelerations jump, the step whose they are.
-    pub jump: Option<usize>,
-    /// Which of [`Selection::asked`] to look at.
-    pub asked: usize,
-    /// The row of the shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
-    pub tip: Option<(usize, f64)>,
-    /// Position of the front axle [m].
-    pub position: f64,
-}
-
-/// What the axles do to the bridge at a stop.
-#[derive(Debug, Clone, Default)]
-pub struct PassingInfluence {
-    /// Influence of each axle on the rows asked for, row by row.
-    pub influence: Vec<f64>,
-    /// What static loads of one at the axles make of the coordinates, axle by axle.
-    pub statics: Vec<f64>,
-}
-
-impl Stop {
-    /// When, in steps of h [s].
-    pub fn when(&self, h: f64) -> f64 {
-        Stop::between(self.step, self.fraction, h)
-    }
-
-    /// When that is so far through a step, in steps of h [s].
-    pub fn between(step: usize, fraction: f64, h: f64) -> f64 {
-        let (before, after) = ((step - 1) as f64 * h, step as f64 * h);
-        before + fraction * (after - before)
-    }
-}
-
 /// How axles move in equal steps of space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Advance {
@@ -118,17 +68,14 @@ pub struct Advance {
     pub beyond: usize,
 }
 
-impl Advance {
-    /// Position of an axle after so many steps [m].
-    #[inline(always)]
-    pub fn x(&self, step: usize, axle: usize) -> f64 {
-        self.advance * step as f64 + self.start - self.behind[axle]
+impl Positions for Advance {
+    fn axles(&self) -> usize {
+        self.behind.len()
     }
 
-    /// Position of an axle a fraction of the way through a step [m].
-    pub fn between(&self, step: usize, fraction: f64, axle: usize) -> f64 {
-        let (before, after) = (self.x(step - 1, axle), self.x(step, axle));
-        before + fraction * (after - before)
+    #[inline(always)]
+    fn x(&self, step: usize, axle: usize) -> f64 {
+        self.advance * step as f64 + self.start - self.behind[axle]
     }
 }
 
@@ -190,7 +137,7 @@ impl Table {
     pub fn new(
         path: Advance,
         shapes: &ModeShapes,
-        (rows, responses, look): (&Rows, &Responses, &Selection),
+        (rows, look): (&Rows, &Selection),
         slopes: bool,
         ground: StudyRoad<'_>,
         laid_out: bool,
@@ -225,12 +172,17 @@ impl Table {
                 }
             }
         }
-        table.stops = stops(&table.path, rows, responses, look);
+        let marks: Vec<f64> = look.marks.iter().map(|mark| mark.x).collect();
+        table.stops = passings(&table.path, &marks).iter().flat_map(|passing| passing.stops(look, true)).collect();
         if !laid_out {
             return table;
         }
-        table.moments =
-            table.stops.iter().map(|stop| table.fill_moment(stop, rows, look, PassingInfluence::default())).collect();
+        let moment = |stop: &Stop| {
+            let mut moment = PassingInfluence::default();
+            moment.fill(stop, &table.path, rows, look);
+            moment
+        };
+        table.moments = table.stops.iter().map(moment).collect();
         let all = look.rows.len() * axles * (steps + 1 - table.first);
         if all <= READY {
             let chunks = (table.first..=steps).step_by(CHUNK);
@@ -242,6 +194,14 @@ impl Table {
             table.ready = Some(filled.collect());
         }
         table
+    }
+
+    /// When an instant is, in steps of h [s].
+    pub fn when(&self, instant: Instant, h: f64) -> f64 {
+        match instant {
+            Instant::Step(step) => step as f64 * h,
+            Instant::Stop(stop) => self.stops[stop].when(h),
+        }
     }
 
     /// Number of axles.
@@ -330,60 +290,19 @@ impl Table {
         if self.laid_out {
             return &self.moments[stop];
         }
-        *scratch = self.fill_moment(&self.stops[stop], rows, look, std::mem::take(scratch));
+        scratch.fill(&self.stops[stop], &self.path, rows, look);
         scratch
     }
-
-    fn fill_moment(
-        &self,
-        stop: &Stop,
-        rows: &Rows,
-        look: &Selection,
-        mut moment: PassingInfluence,
-    ) -> PassingInfluence {
-        let PassingInfluence { influence, statics } = &mut moment;
-        influence.clear();
-        statics.clear();
-        let standing = |axle: usize| match axle == stop.axle {
-            true => stop.side,
-            false => rows.place(self.path.between(stop.step, stop.fraction, axle)),
-        };
-        let standing: Vec<Place> = (0..self.axles()).map(standing).collect();
-        for &row in &look.asked[stop.asked] {
-            let response = look.rows[row].response;
-            influence.extend(standing.iter().map(|place| place.map_or(0.0, |p| rows.influence_of(response, p))));
-        }
-        standing.iter().for_each(|place| rows.extend_static(*place, statics));
-        moment
-    }
 }
 
-/// An axle on a section or on an end of the bridge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passing {
-    /// The step at whose end it has been passed.
-    pub step: usize,
-    /// The axle.
-    pub axle: usize,
-    /// Which of the places.
-    pub place: usize,
-    /// How far through that step.
-    pub fraction: f64,
-    /// Position of the front axle [m].
-    pub position: f64,
-}
-
-/// Stops of a passing: as the axle comes, and as it goes.
-pub const SIDES: usize = 2;
-
-/// Every passing of some places [m], in order.
-pub fn passings(path: &Advance, places: &[f64]) -> Vec<Passing> {
+/// Every passing of some marks [m], in order.
+pub fn passings(path: &Advance, marks: &[f64]) -> Vec<Passing> {
     // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
     let last = path.steps + usize::from(path.beyond > 0);
-    let mut passings = Vec::with_capacity(path.behind.len() * places.len());
+    let mut passings = Vec::with_capacity(path.behind.len() * marks.len());
     for axle in 0..path.behind.len() {
-        for (place, &at) in places.iter().enumerate() {
-            // The first step at whose end the axle is not before the place; where it starts it does not pass.
+        for (mark, &at) in marks.iter().enumerate() {
+            // The first step at whose end the axle is not before the mark; where it starts it does not pass.
             let (mut step, mut end) = (0, last + 1);
             while step < end {
                 let middle = step + (end - step) / 2;
@@ -392,55 +311,9 @@ pub fn passings(path: &Advance, places: &[f64]) -> Vec<Passing> {
             if step == 0 || step > last {
                 continue;
             }
-            let (from, to) = (path.x(step - 1, axle), path.x(step, axle));
-            let fraction = (at - from) / (to - from);
-            let position = path.between(step, fraction, 0);
-            passings.push(Passing { step, axle, place, fraction, position });
+            passings.push(Passing::new(path, step, axle, (mark, at)));
         }
     }
-    passings.sort_unstable_by_key(|passing| (passing.step, passing.axle, passing.place));
+    passings.sort_unstable_by_key(|passing| (passing.step, passing.axle, passing.mark));
     passings
-}
-
-/// Every passing of a section or an end, as [`crate::crossing::extremes`] looks for them, on both sides.
-fn stops(path: &Advance, rows: &Rows, responses: &Responses, look: &Selection) -> Vec<Stop> {
-    let last = rows.mesh().panels();
-    let at: Vec<f64> = look.places.iter().map(|place| place.1).collect();
-    let of = |Passing { step, axle, place, fraction, position }: Passing| {
-        let (node, _, asked) = look.places[place];
-        let left = node.checked_sub(1).map(|panel| (panel, 1.0));
-        let right = (node < last).then_some((node, 0.0));
-        let end = node == 0 || node == last;
-        let held = !end || responses.supported(node);
-        let sides: [_; SIDES] = [(left, step - 1), (right, step)];
-        sides.map(|(side, row)| Stop {
-            step,
-            fraction,
-            axle,
-            side,
-            jump: (!held).then_some(row),
-            asked,
-            tip: (end && side.is_some()).then(|| look.tips[usize::from(node != 0)]).flatten(),
-            position,
-        })
-    };
-    passings(path, &at).into_iter().flat_map(of).collect()
-}
-
-/// The last step of a crossing of so many steps of h [s] with a tail [s], and how far through that step it ends.
-pub fn end(steps: usize, h: f64, tail: f64) -> (usize, f64) {
-    if tail == 0.0 {
-        return (steps, 1.0);
-    }
-    let end = steps as f64 * h + tail;
-    let mut last = steps.max((end / h) as usize);
-    // The first step that comes so far, as a single crossing counts them one by one.
-    while last > steps && (last - 1) as f64 * h >= end - 1e-9 * h {
-        last -= 1;
-    }
-    while (last as f64) * h < end - 1e-9 * h {
-        last += 1;
-    }
-    let time = last as f64 * h;
-    (last, if time > end + 1e-9 * h { 1.0 - (time - end) / h } else { 1.0 })
 }

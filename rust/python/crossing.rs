@@ -86,11 +86,7 @@ impl Crossing {
         let vehicles = vehicles.iter().map(|vehicle| vehicle.0.clone()).collect();
         let read = postcard::from_bytes::<analysis::Outcome>(state);
         let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
-        let (analysis, outcome) = interruptible(py, |stop| {
-            let analysis = bridge.0.analysis(asked, stop)?;
-            let outcome = analysis.received(outcome);
-            Ok((analysis, outcome))
-        })?;
+        let analysis = interruptible(py, |stop| bridge.0.analysis(asked, stop))?;
         Ok(Crossing { analysis, outcome, vehicles })
     }
 
@@ -147,8 +143,7 @@ impl Crossing {
     /// Root mean square of each axle load about its static value, by that value.
     #[getter]
     fn load_coefficients<'py>(&self, py: Python<'py>) -> Vector<'py> {
-        let length = self.analysis.rows.mesh().length();
-        self.outcome.history.load_coefficients(length).into_pyarray(py)
+        self.outcome.load_coefficients().into_pyarray(py)
     }
 
     #[getter]

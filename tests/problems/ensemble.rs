@@ -2,13 +2,15 @@
 //! benches reach that engine.
 
 use spanwise::stop_token::StopToken;
+use spanwise::tape::BridgeFactors;
 use std::sync::{Arc, OnceLock};
 
 use spanwise::bridge::Bridge;
-use spanwise::crossing::analysis::{Analysis, Preparation, Watching};
+use spanwise::crossing::analysis::{Analysis, Preparation};
 use spanwise::crossing::cross;
 use spanwise::crossing::envelope::{Envelope, axle_loads};
 use spanwise::crossing::history::History;
+use spanwise::crossing::observer::Observer;
 use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::results::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
@@ -213,7 +215,7 @@ pub struct Alone {
     pub axle_loads: Envelope,
     /// By what deflections are still to be divided.
     pub stiffness: f64,
-    /// What Ȧ has been multiplied by.
+    /// What the rows take Ȧ times.
     pub rates: f64,
 }
 
@@ -247,10 +249,13 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
     let root = stiffness.sqrt();
     let omega = model.omega.iter().map(|omega| omega * root).collect();
     let own = ModalBridge { omega, damping, ..model.clone() };
-    let mut watching = Watching::new(&study.analysis, &study.free, [stiffness, root * factor]);
-    let mut history = cross(&own, &[passage], &settings, &mut watching, StopToken::NEVER)?;
-    let (_, envelope) = watching.conclude(&mut history, StopToken::NEVER)?;
-    Ok(Alone { vehicle, axle_loads: axle_loads(&history), history, envelope, stiffness, rates: root * factor })
+    let varied = BridgeFactors { coordinates: stiffness, rates: root * factor };
+    let mut observer = Observer::new(&study.analysis.rows, &study.look, &study.free, Some(varied));
+    let history = cross(&own, &[passage], &settings, &mut observer, StopToken::NEVER)?;
+    let envelope = observer.conclude(&history, StopToken::NEVER)?;
+    let rides = history.rides(&[vehicle.heaves()], study.analysis.rows.mesh().length());
+    let axle_loads = axle_loads(&history, &rides);
+    Ok(Alone { vehicle, axle_loads, history, envelope, stiffness, rates: root * factor })
 }
 
 /// Every sample against its own single crossing, to the bit: extremes of responses and axle loads, when and where, and
@@ -285,7 +290,9 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         for (place, &r) in study.look.chosen.iter().enumerate() {
             let (dynamic, at_rest) = (&alone.envelope.dynamic, &alone.envelope.at_rest);
             for (side, (extreme, at_rest)) in
-                [(dynamic.max[r], at_rest.max[r]), (dynamic.min[r], at_rest.min[r])].into_iter().enumerate()
+                [(dynamic.max[place], at_rest.max[place]), (dynamic.min[place], at_rest.min[place])]
+                    .into_iter()
+                    .enumerate()
             {
                 let at = side * layout.responses + place;
                 let (time, position) = hands.when(speed, instants[at]);
@@ -314,8 +321,8 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         assert!((tail - length).abs() <= 1e-9 * alone.history.step, "{name}, sample {sample}: {tail} s, {length} s");
         let reach = alone.history.reach.clone().unwrap().scaled(alone.stiffness, alone.rates);
         let seen = |row: usize| {
-            let r = study.free.responses[row];
-            [alone.envelope.dynamic.max[r].value, alone.envelope.dynamic.min[r].value]
+            let place = study.look.row_of.iter().position(|&own| own == row).unwrap();
+            [alone.envelope.dynamic.max[place].value, alone.envelope.dynamic.min[place].value]
         };
         let [most, side] = study.free.growth(&reach, seen);
         let expected = [most, study.look.side(side)];

@@ -75,7 +75,7 @@ pub fn run_all(
     let analysis = preparation.of(bridge, modes, StopToken::NEVER)?;
     let outcome = analysis.cross_all(passages, settings, StopToken::NEVER)?;
     let all = 0..analysis.rows.len();
-    let responded = analysis.rows.histories(&outcome.packed, all, StopToken::NEVER)?;
+    let responded = outcome.history.responses(&analysis.rows, all, StopToken::NEVER)?;
     let flexibility = Flexibility::new(bridge, &analysis.sections)?;
     Ok(Run { bridge: bridge.clone(), flexibility, analysis, outcome, responded })
 }

@@ -1,8 +1,18 @@
-//! Steps of samples side by side, kept until their responses are looked at, with the largest and smallest of what they
-//! consist of.
+//! Steps kept until their responses are looked at, of one crossing or of several side by side, with the largest and
+//! smallest of what they consist of.
 
-use super::table::{CHUNK, PART, PARTS};
 use crate::lane::Lane;
+use crate::recovery::Rows;
+use crate::step::newmark::Coordinate;
+
+/// Steps whose responses are bounded together.
+pub const CHUNK: usize = 32;
+
+/// Steps of a part of a chunk.
+pub const PART: usize = 8;
+
+/// Parts of a chunk.
+pub const PARTS: usize = CHUNK / PART;
 
 /// What a step leaves for recovery, in a row of numbers: coordinates, loads [N], vertical accelerations of the bodies
 /// [m/s²]. Where responses do not feel the loads, zeros stand in their place and the loads follow.
@@ -16,9 +26,29 @@ pub struct Widths {
     pub bodies: usize,
     /// Whether responses feel the loads; by superposition they do not.
     pub felt: bool,
+    /// Whether the coordinates are Ȧ and Ä, not A.
+    pub rates: bool,
 }
 
 impl Widths {
+    /// Of what these rows multiply.
+    pub fn of(rows: &Rows, axles: usize, bodies: usize) -> Self {
+        Widths { coordinates: rows.width(), axles, bodies, felt: rows.weight() == 1.0, rates: rows.by_rates() }
+    }
+
+    /// Numbers that responses follow from.
+    #[inline(always)]
+    pub fn used(&self) -> usize {
+        self.coordinates + self.axles
+    }
+
+    /// From which of these on they jump as a wheel drops on or off a free end, its own load apart: Ä follows a load at once,
+    /// A and Ȧ do not.
+    #[inline(always)]
+    pub fn jumps(&self) -> usize {
+        if self.rates { self.coordinates / 2 } else { self.coordinates }
+    }
+
     /// Numbers of a step.
     #[inline(always)]
     pub fn all(&self) -> usize {
@@ -35,6 +65,45 @@ impl Widths {
     #[inline(always)]
     pub fn accelerations(&self) -> usize {
         self.loads() + self.axles
+    }
+}
+
+/// What a bridge that is varied makes of what the rows multiply.
+#[derive(Debug, Clone, Copy)]
+pub struct BridgeFactors<L> {
+    /// On A: the factor of the stiffness.
+    pub coordinates: L,
+    /// On Ȧ: how the damping matrix grows.
+    pub rates: L,
+}
+
+impl Widths {
+    /// Writes the coordinates of a step down, by the state of each mode; on a bridge at rest there are none yet.
+    #[inline(always)]
+    pub fn write_modes<L: Lane>(
+        &self,
+        row: &mut [L],
+        modes: usize,
+        mode: impl Fn(usize) -> Coordinate<L>,
+        factors: Option<&BridgeFactors<L>>,
+    ) {
+        let Widths { coordinates, axles, felt, rates, .. } = *self;
+        if modes == 0 {
+            row[..coordinates].fill(L::splat(0.0));
+        } else if rates {
+            let (velocities, accelerations) = row[..coordinates].split_at_mut(coordinates / 2);
+            for (m, (v, a)) in velocities.iter_mut().zip(accelerations).enumerate() {
+                *v = factors.map_or(mode(m).v, |f| f.rates * mode(m).v);
+                *a = mode(m).a;
+            }
+        } else {
+            for (m, a) in row[..coordinates].iter_mut().enumerate() {
+                *a = factors.map_or(mode(m).x, |f| f.coordinates * mode(m).x);
+            }
+        }
+        if !felt {
+            row[coordinates..][..axles].fill(L::splat(0.0));
+        }
     }
 }
 
@@ -55,7 +124,7 @@ pub struct Tape<L> {
     parts: Vec<[L; 2]>,
 }
 
-/// A chunk of a stretch.
+/// A chunk of a tape.
 pub struct Kept<'s, L> {
     /// Number of its first step.
     pub from: usize,
@@ -70,7 +139,7 @@ pub struct Kept<'s, L> {
 impl<L: Lane> Tape<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true };
+        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true, rates: false };
         Tape { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
     }
 
@@ -130,6 +199,14 @@ impl<L: Lane> Tape<L> {
         self.steps += count;
     }
 
+    /// Takes in all of so many steps, chunk by chunk.
+    #[inline(always)]
+    pub fn take_all(&mut self, count: usize) {
+        for from in (0..count).step_by(CHUNK) {
+            self.take(CHUNK.min(count - from));
+        }
+    }
+
     /// Its steps, in order.
     #[inline(always)]
     pub fn taken(&self) -> impl Iterator<Item = &[L]> {
@@ -157,5 +234,18 @@ impl<L: Lane> Tape<L> {
 impl<L: Lane> Default for Tape<L> {
     fn default() -> Self {
         Tape::new()
+    }
+}
+
+/// The row of a step with loads at rest on the axles: Ā_st (KTN73 Eq. 9), from what loads of one at each axle make of it,
+/// and the loads behind it.
+#[inline(always)]
+pub fn write_at_rest<L: Lane>(of_one: &[f64], loads: &[L], row: &mut [L]) {
+    let (coordinates, behind) = row.split_at_mut(row.len() - loads.len());
+    behind.copy_from_slice(loads);
+    let width = coordinates.len();
+    for (i, coordinate) in coordinates.iter_mut().enumerate() {
+        let terms = of_one.chunks_exact(width).zip(loads);
+        *coordinate = terms.fold(L::splat(0.0), |sum, (shapes, load)| sum + *load * L::splat(shapes[i]));
     }
 }

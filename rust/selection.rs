@@ -1,6 +1,6 @@
-//! Which responses a study looks at, each distinct row once.
+//! Which responses are looked at, each distinct row once, and where axles pass that matter to them.
 
-use crate::recovery::Rows;
+use crate::recovery::{Place, Rows};
 use crate::statics::influence::{Quantity, Responses};
 
 /// A row that is evaluated.
@@ -14,7 +14,22 @@ pub struct Row {
     pub turned: Vec<usize>,
 }
 
-/// The responses of a study.
+/// A section or an end of the bridge, where extremes are looked for as an axle passes.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// Position [m].
+    pub x: f64,
+    /// Where an axle stands on it as it comes from the left, and from the right.
+    pub sides: [Place; 2],
+    /// Whether nothing jumps as an axle passes: everywhere but on the free ends, whose tip the wheel drops on or off.
+    pub held: bool,
+    /// Which of [`Selection::asked`] to look at.
+    pub asked: usize,
+    /// The row of the shear just inside an end of the bridge, and the sign with which an axle on that end adds to it.
+    pub tip: Option<(usize, f64)>,
+}
+
+/// The responses looked at.
 #[derive(Debug, Clone)]
 pub struct Selection {
     /// Chosen responses, in the order of the results.
@@ -27,13 +42,10 @@ pub struct Selection {
     pub deflections: Vec<bool>,
     /// By response, the row that stands for it, if it is looked at.
     row_for: Vec<Option<usize>>,
-    /// Where extremes are looked for as an axle passes, from left to right: node, position [m], and which of
-    /// [`Selection::asked`].
-    pub places: Vec<(usize, f64, usize)>,
+    /// Where extremes are looked for as an axle passes, from left to right.
+    pub marks: Vec<Mark>,
     /// Rows to look at there: deflection, moment and shears of each section, and last, for the ends, all.
     pub asked: Vec<Vec<usize>>,
-    /// The rows of the shears just inside the left and the right end, with the sign with which an axle on that end adds.
-    pub tips: [Option<(usize, f64)>; 2],
 }
 
 impl Selection {
@@ -48,9 +60,8 @@ impl Selection {
             row_of: Vec::new(),
             deflections: Vec::new(),
             row_for: vec![None; responses.len()],
-            places: Vec::new(),
+            marks: Vec::new(),
             asked: Vec::new(),
-            tips: [None; 2],
         };
         // By response, so that many sections are no more work each than few.
         let mut own_row: Vec<Option<usize>> = vec![None; responses.len()];
@@ -77,7 +88,7 @@ impl Selection {
                 look.deflections.push(deflections.contains(&response));
             }
         }
-        look.find_places(rows, responses);
+        look.find_marks(rows, responses);
         look
     }
 
@@ -88,15 +99,12 @@ impl Selection {
         (2 * place) as f64 + of_row % 2.0
     }
 
-    /// Every section and both ends, as [`crate::crossing::extremes`] looks for their passing.
-    fn find_places(&mut self, rows: &Rows, responses: &Responses) {
+    /// Every section and both ends.
+    fn find_marks(&mut self, rows: &Rows, responses: &Responses) {
         let (nodes, last) = (rows.mesh().nodes(), rows.mesh().panels());
         let sections = responses.sections();
         let count = sections.len();
-        let inner = sections.iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
-        self.places = inner.map(|(section, &node)| (node, nodes[node], section)).collect();
-        self.places.extend([(0, nodes[0], count), (last, nodes[last], count)]);
-        self.places.sort_unstable_by_key(|place| place.0);
+        // Of a section deflection, moment and both shears: what else is looked at must not matter. On an end all.
         let own = |section: usize| {
             let mut rows: Vec<usize> = (0..4).filter_map(|quantity| self.row(quantity * count + section)).collect();
             rows.dedup();
@@ -104,11 +112,30 @@ impl Selection {
         };
         self.asked = (0..count).map(own).collect();
         self.asked.push((0..self.rows.len()).collect());
-        let shear = |quantity: Quantity, node: usize, sign: f64| {
+        let inner = sections.iter().enumerate().filter(|&(_, &node)| node != 0 && node != last);
+        let mut places: Vec<(usize, usize)> = inner.map(|(section, &node)| (node, section)).collect();
+        places.extend([(0, count), (last, count)]);
+        places.sort_unstable();
+        let shear = |node: usize| {
+            let (quantity, sign) = match node {
+                0 => (Quantity::ShearRight, -1.0),
+                _ => (Quantity::ShearLeft, 1.0),
+            };
             let section = sections.iter().position(|&s| s == node)?;
             Some((self.row(responses.range(quantity).start + section)?, sign))
         };
-        self.tips = [shear(Quantity::ShearRight, 0, -1.0), shear(Quantity::ShearLeft, last, 1.0)];
+        let marks = places.into_iter().map(|(node, asked)| {
+            let (left, right) = (node.checked_sub(1).map(|panel| (panel, 1.0)), (node < last).then_some((node, 0.0)));
+            let end = node == 0 || node == last;
+            Mark {
+                x: nodes[node],
+                sides: [left, right],
+                held: !end || responses.supported(node),
+                asked,
+                tip: if end { shear(node) } else { None },
+            }
+        });
+        self.marks = marks.collect();
     }
 
     /// The row that stands for a response, if it is looked at.

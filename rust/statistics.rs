@@ -1,13 +1,13 @@
-//! Statistics of samples side by side: axle loads, wheels off the road, accelerations, and responses as axles pass.
+//! Statistics of the ride: axle loads, wheels off the road, accelerations of the bodies.
 
-use super::selection::Selection;
-use super::table::{PassingInfluence, Stop};
-use super::tape::{Tape, Widths};
-use crate::crossing::watched::Watched;
+use serde::{Deserialize, Serialize};
+
+use crate::extremes::Watched;
 use crate::lane::Lane;
+use crate::tape::Tape;
 
-/// Contact forces and accelerations over a crossing.
-#[derive(Debug, Clone)]
+/// Contact forces of a vehicle and accelerations of its bodies over a crossing.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Ride<L> {
     /// Extremes of the axle loads.
     pub loads: Vec<Watched<L>>,
@@ -23,6 +23,8 @@ pub struct Ride<L> {
     pub accelerations: Vec<L>,
     /// Sums of their squares, on the bridge.
     pub squares: Vec<L>,
+    /// Number of steps on the bridge.
+    pub counted: usize,
 }
 
 impl<L: Lane> Ride<L> {
@@ -37,16 +39,28 @@ impl<L: Lane> Ride<L> {
             grounded: vec![one; axles],
             accelerations: vec![zero; bodies],
             squares: vec![zero; bodies],
+            counted: 0,
         }
     }
 
-    /// Takes in the last chunk of a stretch; `left` says how much of the step that follows a step the lanes go, and sums
+    /// Root mean square of an axle load about its static value, by that value, on the bridge, in one lane [-].
+    pub fn load_coefficient(&self, axle: usize, lane: usize, static_load: f64) -> f64 {
+        (self.deviations[axle].get(lane) / self.counted as f64).sqrt() / static_load
+    }
+
+    /// Root mean square of the acceleration of a body on the bridge, in one lane [m/s²].
+    pub fn vibration(&self, body: usize, lane: usize) -> f64 {
+        (self.squares[body].get(lane) / self.counted as f64).sqrt()
+    }
+
+    /// Takes in the last chunk of a tape; `left` says how much of the step that follows a step the lanes go, and sums
     /// grow where the steps are `counted`. Lanes that have ended go on as they were.
     #[inline(always)]
-    pub fn take(&mut self, stretch: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
+    pub fn take(&mut self, tape: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let Some(chunk) = stretch.chunks().last() else { return };
-        let (widths, width, from) = (&stretch.widths, stretch.widths.all(), chunk.from);
+        let Some(chunk) = tape.chunks().last() else { return };
+        self.counted += if counted { chunk.rows.len() / tape.widths.all() } else { 0 };
+        let (widths, width, from) = (&tape.widths, tape.widths.all(), chunk.from);
         for (k, static_load) in static_loads.iter().enumerate() {
             let number = widths.loads() + k;
             let loads = || chunk.rows.chunks_exact(width).map(|row| row[number]).enumerate();
@@ -91,67 +105,6 @@ impl<L: Lane> Ride<L> {
                 }
                 *squares = sum;
             }
-        }
-    }
-}
-
-/// One response at a step.
-#[inline(always)]
-pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
-    let mut value = L::splat(factors[0]) * row[0];
-    for (factor, a) in factors[1..].iter().zip(&row[1..]) {
-        value = value + L::splat(*factor) * *a;
-    }
-    for (g, load) in influence.iter().zip(&row[factors.len()..]) {
-        value = value + L::splat(*g) * *load;
-    }
-    value
-}
-
-/// Takes in a moment between two steps, given their rows. From coordinate number `jumps` on they jump with a load: Ä
-/// follows it at once, A and Ȧ do not. `between` is scratch.
-#[inline(always)]
-#[allow(clippy::too_many_arguments)] // each is one thing
-pub fn watch_stop<L: Lane>(
-    watched: &mut [Watched<L>],
-    look: &Selection,
-    (stop, number, moment): (&Stop, usize, &PassingInfluence),
-    [before, after]: [&[L]; 2],
-    widths: &Widths,
-    jumps: usize,
-    between: &mut Vec<L>,
-) {
-    let fraction = L::splat(stop.fraction);
-    let (c, a) = (widths.coordinates, widths.axles);
-    between.clear();
-    for i in 0..c + a {
-        between.push(before[i] + fraction * (after[i] - before[i]));
-    }
-    if let Some(step) = stop.jump {
-        let side = if step == stop.step { after } else { before };
-        between[jumps..c].copy_from_slice(&side[jumps..c]);
-        between[c + stop.axle] = side[c + stop.axle];
-    }
-    watch_moment(watched, look, (stop, number, moment), between);
-}
-
-/// Takes in a moment at which an axle passes, given coordinates and loads then.
-#[inline(always)]
-pub fn watch_moment<L: Lane>(
-    watched: &mut [Watched<L>],
-    look: &Selection,
-    (stop, number, moment): (&Stop, usize, &PassingInfluence),
-    then: &[L],
-) {
-    let at = L::splat(number as f64);
-    let c = look.rows.first().map_or(0, |row| row.factors.len());
-    for (&r, influence) in look.asked[stop.asked].iter().zip(moment.influence.chunks_exact(then.len() - c)) {
-        let value = value(&look.rows[r].factors, influence, then);
-        watched[r].take(value, at);
-        if let Some((tip, sign)) = stop.tip
-            && tip == r
-        {
-            watched[r].take(value + L::splat(sign) * then[c + stop.axle], at);
         }
     }
 }

@@ -1,0 +1,249 @@
+//! The observer of one crossing: the extremes of every response, step after step, and whether anything can still follow.
+
+use crate::crossing::envelope::{Envelope, Extreme, Extremes};
+use crate::crossing::history::{History, TOGETHER};
+use crate::crossing::tail::{FreeRows, Watch};
+use crate::error::Error;
+use crate::extremes::{Instant, Seen, at_steps, at_stop, interpolate, value};
+use crate::recovery::{Place, Rows};
+use crate::selection::Selection;
+use crate::step::vibration::Reach;
+use crate::stop_token::StopToken;
+use crate::stops::{Follower, PassingInfluence, Positions, Stop};
+use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
+
+/// Extremes of the responses looked at, while a history grows.
+pub struct Observer<'a> {
+    rows: &'a Rows,
+    look: &'a Selection,
+    free: &'a FreeRows,
+    /// The bridge, if it is varied.
+    factors: Option<BridgeFactors<f64>>,
+    follower: Option<Follower>,
+    stops: Vec<Stop>,
+    /// Steps that have been looked at, the start among them.
+    steps: usize,
+    dynamic: Seen<f64>,
+    /// Under the static axle loads at the same positions.
+    at_rest: Seen<f64>,
+    /// A row that could still grow when last asked, with what it had reached at so many steps.
+    growing: Option<(usize, [f64; 2], usize)>,
+    desk: Desk,
+}
+
+/// Room to work in, for steps dynamic and at rest, and for one instant.
+#[derive(Default)]
+struct Desk {
+    dynamic: Tape<f64>,
+    at_rest: Tape<f64>,
+    places: Vec<Place>,
+    of_one: Vec<f64>,
+    moment: PassingInfluence,
+    then: Vec<f64>,
+    then_at_rest: Vec<f64>,
+    influence: Vec<f64>,
+}
+
+impl<'a> Observer<'a> {
+    /// Of the responses that `look` names, by the rows of a bridge that may be varied by `factors`; `free` is the same
+    /// without vehicles on the bridge.
+    pub fn new(rows: &'a Rows, look: &'a Selection, free: &'a FreeRows, factors: Option<BridgeFactors<f64>>) -> Self {
+        let nothing = Seen::beginning(look.rows.len(), false);
+        Observer {
+            rows,
+            look,
+            free,
+            factors,
+            follower: None,
+            stops: Vec::new(),
+            steps: 0,
+            dynamic: nothing.clone(),
+            at_rest: nothing,
+            growing: None,
+            desk: Desk::default(),
+        }
+    }
+
+    /// Goes on to the last step that there is.
+    fn go_on(&mut self, history: &History, stop: StopToken<'_>) -> Result<(), Error> {
+        while self.steps < history.len() {
+            let from = self.steps;
+            self.steps = (from + TOGETHER).min(history.len());
+            self.write(history, from);
+            let Desk { dynamic, at_rest, places, .. } = &self.desk;
+            at_steps(&mut self.dynamic.steps, self.rows, self.look, dynamic, places);
+            at_steps(&mut self.at_rest.steps, self.rows, self.look, at_rest, places);
+            self.pass(history, from);
+            stop.check()?;
+        }
+        Ok(())
+    }
+
+    /// What a step leaves for recovery, dynamic and at rest.
+    fn widths(&self, axles: usize) -> [Widths; 2] {
+        [self.rows.weight() == 1.0, true].map(|felt| Widths { felt, ..Widths::of(self.rows, axles, 0) })
+    }
+
+    /// Writes down the steps from one on, and the one before.
+    fn write(&mut self, history: &History, from: usize) {
+        let [widths, widths_at_rest] = self.widths(history.axles);
+        let (rows, factors, to) = (self.rows, self.factors.as_ref(), self.steps);
+        let Desk { dynamic, at_rest, places, of_one, .. } = &mut self.desk;
+        dynamic.begin(widths, from, (to - from).div_ceil(CHUNK));
+        at_rest.begin(widths_at_rest, from, (to - from).div_ceil(CHUNK));
+        places.clear();
+        if from > 0 {
+            history.write(from - 1, &widths, factors, dynamic.row_mut(from)[0]);
+        }
+        for step in from..to {
+            let [_, row] = dynamic.row_mut(step);
+            history.write(step, &widths, factors, row);
+            let first = places.len();
+            places.extend((0..history.axles).map(|axle| rows.place(history.x(step, axle))));
+            of_one.clear();
+            places[first..].iter().for_each(|place| rows.extend_static(*place, of_one));
+            let [_, row] = at_rest.row_mut(step);
+            write_at_rest(of_one, &history.static_loads, row);
+        }
+        dynamic.take_all(to - from);
+        at_rest.take_all(to - from);
+    }
+
+    /// Takes in every stop from a step on.
+    fn pass(&mut self, history: &History, from: usize) {
+        let Observer { rows, look, follower, stops, desk, .. } = self;
+        let Desk { dynamic, moment, then, then_at_rest, .. } = desk;
+        let follower = follower.get_or_insert_with(|| {
+            let to_the_right = (0..history.axles).map(|axle| history.direction(axle) > 0.0).collect();
+            Follower::new(history, to_the_right, &look.marks)
+        });
+        let first = stops.len();
+        for step in from.max(1)..self.steps {
+            follower.stops(history, step, look, stops);
+        }
+        then_at_rest.resize(dynamic.widths.used(), 0.0);
+        for (number, stop) in stops.iter().enumerate().skip(first) {
+            moment.fill(stop, history, rows, look);
+            interpolate(stop, [dynamic.row(stop.step - 1), dynamic.row(stop.step)], &dynamic.widths, then);
+            at_stop(&mut self.dynamic.stops, look, (stop, number, moment), then);
+            write_at_rest(&moment.statics, &history.static_loads, then_at_rest);
+            at_stop(&mut self.at_rest.stops, look, (stop, number, moment), then_at_rest);
+        }
+    }
+
+    /// What it has come to, the crossing being over: extremes of the responses looked at, in their order.
+    pub fn conclude(mut self, history: &History, stop: StopToken<'_>) -> Result<Envelope, Error> {
+        self.go_on(history, stop)?;
+        let mut envelope = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        for row in 0..self.look.rows.len() {
+            let when = |instant| self.when(history, instant);
+            let dynamic = self.dynamic.sides(row, 0, when).map(|found| (0, found));
+            let at_rest = self.at_rest.sides(row, 0, when).map(|found| (1, found));
+            for (all, (of, (value, instant))) in envelope.iter_mut().zip([dynamic, at_rest].concat()) {
+                let position = match instant {
+                    Instant::Step(step) => history.x(step, 0),
+                    Instant::Stop(number) => self.stops[number].position,
+                };
+                let (time, partner) = (self.when(history, instant), self.partner(history, row, of, (value, instant)));
+                all.push(Extreme { value, time, position, partner });
+            }
+        }
+        let [max, min, max_at_rest, min_at_rest] =
+            envelope.map(|of_rows| self.look.row_of.iter().map(|&row| of_rows[row]).collect());
+        let (dynamic, at_rest) = (Extremes { max, min }, Extremes { max: max_at_rest, min: min_at_rest });
+        Ok(Envelope { dynamic, at_rest })
+    }
+
+    fn when(&self, history: &History, instant: Instant) -> f64 {
+        match instant {
+            Instant::Step(step) => history.time[step],
+            Instant::Stop(number) => {
+                let Stop { step, fraction, .. } = self.stops[number];
+                history.time[step - 1] + fraction * (history.time[step] - history.time[step - 1])
+            }
+        }
+    }
+
+    /// The static response at an extreme of the dynamic one, the first of them, or the other way round.
+    fn partner(&mut self, history: &History, row: usize, of: usize, (extreme, instant): (f64, Instant)) -> f64 {
+        let [widths, _] = self.widths(history.axles);
+        let Observer { rows, look, stops, desk, factors, .. } = self;
+        let Desk { places, of_one, then, then_at_rest, influence, .. } = desk;
+        let stop = match instant {
+            Instant::Step(step) => {
+                then.resize(widths.all(), 0.0);
+                history.write(step, &widths, factors.as_ref(), then);
+                history.places(step, rows, places);
+                None
+            }
+            Instant::Stop(number) => {
+                let stop = &stops[number];
+                let mut sides = [stop.step - 1, stop.step].map(|step| {
+                    let mut row = vec![0.0; widths.all()];
+                    history.write(step, &widths, factors.as_ref(), &mut row);
+                    row
+                });
+                let [before, after] = &mut sides;
+                interpolate(stop, [before, after], &widths, then);
+                stop.places(history, rows, places);
+                Some(stop)
+            }
+        };
+        of_one.clear();
+        places.iter().for_each(|place| rows.extend_static(*place, of_one));
+        then_at_rest.resize(widths.used(), 0.0);
+        write_at_rest(of_one, &history.static_loads, then_at_rest);
+        influence.clear();
+        let response = look.rows[row].response;
+        influence.extend(places.iter().map(|place| place.map_or(0.0, |place| rows.influence_of(response, place))));
+        let states = [&then[..widths.used()], &then_at_rest[..]];
+        let [own, other] = [states[of], states[1 - of]];
+        let of_state = |state: &[f64]| value(&look.rows[row].factors, influence, state);
+        match stop.and_then(|stop| stop.tip.map(|tip| (stop.axle, tip))) {
+            // On the end itself, the axle adds to the shear just inside.
+            Some((axle, (tip, sign))) if tip == row && of_state(own) + 0.0 != extreme => {
+                of_state(other) + sign * other[widths.coordinates + axle]
+            }
+            _ => of_state(other),
+        }
+    }
+}
+
+impl Watch for Observer<'_> {
+    fn enough(&mut self, history: &History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
+        let free = self.free;
+        let reach = match self.factors {
+            Some(BridgeFactors { coordinates, rates }) => reach.clone().scaled(coordinates, rates),
+            None => reach.clone(),
+        };
+        let load: f64 = history.static_loads.iter().sum();
+        // One row that can still grow is enough to go on, and little work to ask: all others can wait.
+        if let (Some((row, [most, least], steps)), Some(follower)) = (self.growing, &self.follower)
+            && follower.is_past(&self.look.marks)
+        {
+            let [widths, _] = self.widths(history.axles);
+            let Desk { then, influence, .. } = &mut self.desk;
+            let (rows, look) = (self.rows, &self.look.rows[row]);
+            then.resize(widths.all(), 0.0);
+            let mut seen = [most, least];
+            for step in steps..history.len() {
+                history.write(step, &widths, self.factors.as_ref(), then);
+                influence.clear();
+                let places = (0..history.axles).map(|axle| rows.place(history.x(step, axle)));
+                influence
+                    .extend(places.map(|place| place.map_or(0.0, |place| rows.influence_of(look.response, place))));
+                let value = value(&look.factors, influence, &then[..widths.used()]);
+                seen = [seen[0].max(value), seen[1].min(value)];
+            }
+            self.growing = Some((row, seen, history.len()));
+            if free.unsettled(row, &reach, load, seen) {
+                return Ok(false);
+            }
+        }
+        self.go_on(history, stop)?;
+        let mut rows = 0..self.look.rows.len();
+        let growing = rows.find(|&row| free.unsettled(row, &reach, load, self.dynamic.reached(row)));
+        self.growing = growing.map(|row| (row, self.dynamic.reached(row), self.steps));
+        Ok(growing.is_none())
+    }
+}

@@ -1,0 +1,259 @@
+//! Extremes: the largest and smallest of every response so far, at steps and at stops between them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::lane::Lane;
+use crate::recovery::{Place, Placed, Responding, Rows, WIDTH};
+use crate::selection::Selection;
+use crate::stops::{PassingInfluence, Stop};
+use crate::tape::{Tape, Widths};
+
+/// Largest and smallest so far, and when: the number of a step or of a stop; of one value in samples side by side, or of
+/// responses side by side.
+///
+/// Looked at in every step, so without a branch: the number is an `f64` and chosen along with the value.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Watched<L> {
+    /// Largest.
+    pub max: L,
+    /// When.
+    pub max_at: L,
+    /// Smallest.
+    pub min: L,
+    /// When.
+    pub min_at: L,
+}
+
+impl<L: Lane> Watched<L> {
+    /// Nothing seen yet.
+    #[inline(always)]
+    pub fn nothing() -> Self {
+        let (low, high, zero) = (L::splat(f64::NEG_INFINITY), L::splat(f64::INFINITY), L::splat(0.0));
+        Watched { max: low, max_at: zero, min: high, min_at: zero }
+    }
+
+    /// At rest at step zero.
+    #[inline(always)]
+    pub fn rest() -> Self {
+        let zero = L::splat(0.0);
+        Watched { max: zero, max_at: zero, min: zero, min_at: zero }
+    }
+
+    /// That of one lane.
+    pub fn one(&self, lane: usize) -> Watched<f64> {
+        let [max, max_at, min, min_at] = [self.max, self.max_at, self.min, self.min_at].map(|of| of.get(lane));
+        Watched { max, max_at, min, min_at }
+    }
+
+    /// From one for each lane; the last is that of all that follow too.
+    pub fn beside(each: &[Watched<f64>]) -> Self {
+        let of = |part: fn(&Watched<f64>) -> f64| L::from_fn(|lane| part(&each[lane.min(each.len() - 1)]));
+        Watched { max: of(|w| w.max), max_at: of(|w| w.max_at), min: of(|w| w.min), min_at: of(|w| w.min_at) }
+    }
+
+    /// This, but for the lanes of a mask, which are as they were.
+    #[inline(always)]
+    pub fn unless(self, mask: L::Mask, before: Self) -> Self {
+        Watched {
+            max: L::select(mask, before.max, self.max),
+            max_at: L::select(mask, before.max_at, self.max_at),
+            min: L::select(mask, before.min, self.min),
+            min_at: L::select(mask, before.min_at, self.min_at),
+        }
+    }
+
+    /// Takes in a value; of equal values the first counts.
+    #[inline(always)]
+    pub fn take(&mut self, value: L, at: L) {
+        let (above, below) = (self.max.less(value), value.less(self.min));
+        self.max_at = L::select(above, at, self.max_at);
+        self.min_at = L::select(below, at, self.min_at);
+        self.max = value.larger(self.max);
+        self.min = value.smaller(self.min);
+    }
+
+    /// Whether values within these bounds, the upper and the lower, can be new extremes in any lane, where it is known
+    /// what the extremes will reach in the end.
+    #[inline(always)]
+    pub fn may_grow(&self, [high, low]: [L; 2], [most, least]: [L; 2]) -> bool {
+        let above = !(!self.max.less(high) | high.less(most));
+        let below = !(!low.less(self.min) | least.less(low));
+        L::any(above | below)
+    }
+}
+
+/// An instant at which an extreme can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Instant {
+    /// The end of a step, by its number.
+    Step(usize),
+    /// A stop between two steps, by its number.
+    Stop(usize),
+}
+
+/// Extremes of all rows.
+#[derive(Debug, Clone)]
+pub struct Seen<L> {
+    /// By row, at steps.
+    pub steps: Vec<Watched<L>>,
+    /// By row, at stops.
+    pub stops: Vec<Watched<L>>,
+}
+
+impl<L: Lane> Seen<L> {
+    /// Of so many rows nothing, or at rest at step zero.
+    pub fn beginning(rows: usize, at_rest: bool) -> Self {
+        let before = if at_rest { Watched::rest() } else { Watched::nothing() };
+        Seen { steps: vec![before; rows], stops: vec![Watched::nothing(); rows] }
+    }
+
+    /// Largest and smallest of a row.
+    #[inline(always)]
+    pub fn reached(&self, row: usize) -> [L; 2] {
+        let (at_step, at_stop) = (&self.steps[row], &self.stops[row]);
+        [at_step.max.larger(at_stop.max), at_step.min.smaller(at_stop.min)]
+    }
+
+    /// Largest and smallest of a row in one lane, each with its instant; `when` that is. Of equal values the first counts,
+    /// and if they are one instant the stop.
+    pub fn sides(&self, row: usize, lane: usize, when: impl Fn(Instant) -> f64) -> [(f64, Instant); 2] {
+        let pick = |of: fn(&Watched<L>) -> (L, L), sense: f64| {
+            let number = |watched: &Watched<L>| {
+                let (value, at) = of(watched);
+                (value.get(lane), at.get(lane) as usize)
+            };
+            let ((at_step, step), (at_stop, stop)) = (number(&self.steps[row]), number(&self.stops[row]));
+            let (step, stop) = (Instant::Step(step), Instant::Stop(stop));
+            let better = sense * at_stop > sense * at_step;
+            // Zeros lose their sign, which says nothing and would depend on the order of sums.
+            if better || at_stop == at_step && when(stop) <= when(step) {
+                (at_stop + 0.0, stop)
+            } else {
+                (at_step + 0.0, step)
+            }
+        };
+        [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
+    }
+}
+
+/// One response at a step.
+#[inline(always)]
+pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
+    let mut value = L::splat(factors[0]) * row[0];
+    for (factor, a) in factors[1..].iter().zip(&row[1..]) {
+        value = value + L::splat(*factor) * *a;
+    }
+    for (g, load) in influence.iter().zip(&row[factors.len()..]) {
+        value = value + L::splat(*g) * *load;
+    }
+    value
+}
+
+/// What the rows multiply at a stop, from the steps before and after it, of which it is a mixture, but for what jumps.
+#[inline(always)]
+pub fn interpolate<L: Lane>(stop: &Stop, [before, after]: [&[L]; 2], widths: &Widths, between: &mut Vec<L>) {
+    let fraction = L::splat(stop.fraction);
+    between.clear();
+    for i in 0..widths.used() {
+        between.push(before[i] + fraction * (after[i] - before[i]));
+    }
+    if let Some(step) = stop.jump {
+        let side = if step == stop.step { after } else { before };
+        let (jumps, c) = (widths.jumps(), widths.coordinates);
+        between[jumps..c].copy_from_slice(&side[jumps..c]);
+        between[c + stop.axle] = side[c + stop.axle];
+    }
+}
+
+/// Takes in a stop, given coordinates and loads then, and what they do to the rows asked for.
+#[inline(always)]
+pub fn at_stop<L: Lane>(
+    watched: &mut [Watched<L>],
+    look: &Selection,
+    (stop, number, moment): (&Stop, usize, &PassingInfluence),
+    then: &[L],
+) {
+    let at = L::splat(number as f64);
+    let c = look.rows.first().map_or(0, |row| row.factors.len());
+    for (&r, influence) in look.asked[stop.asked].iter().zip(moment.influence.chunks_exact(then.len() - c)) {
+        let value = value(&look.rows[r].factors, influence, then);
+        watched[r].take(value, at);
+        if let Some((tip, sign)) = stop.tip
+            && tip == r
+        {
+            watched[r].take(value + L::splat(sign) * then[c + stop.axle], at);
+        }
+    }
+}
+
+/// Looks for the extremes of every row at the steps of a tape of one sample; `places` are those of its axles, by step and
+/// axle, none where there is no axle on the bridge.
+///
+/// To bound responses chunk by chunk, as [`crate::ensemble::bounds`] does, pays where many samples share the influence of
+/// their loads. For a few it is less work to evaluate every response at every step, response beside response, from the
+/// same numbers in the same order: the extremes are the same bits.
+pub fn at_steps<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Selection, tape: &Tape<L>, places: &[Place]) {
+    let (c, axles) = (tape.widths.coordinates, if places.is_empty() { 0 } else { tape.widths.axles });
+    let mut steps = Steps {
+        rows,
+        from: tape.from,
+        axles,
+        coordinates: Vec::with_capacity(c * tape.steps),
+        placed: Vec::with_capacity(axles * tape.steps),
+        blocks: Vec::new(),
+    };
+    for (i, kept) in tape.taken().enumerate() {
+        steps.coordinates.extend(kept[..c].iter().map(|a| a.get(0)));
+        let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
+        steps.placed.extend(here.map(|(&place, load)| Placed::new(place, load.get(0))));
+    }
+    // Rows are in the order of their responses, so that those of one block follow each other.
+    let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
+    let mut all = watched.iter();
+    for rows in of_blocks() {
+        let mut seen = [Watched::<f64>::nothing(); WIDTH];
+        for (row, own) in rows.iter().zip(&mut all) {
+            seen[row.response % WIDTH] = own.one(0);
+        }
+        steps.blocks.push((rows[0].response / WIDTH, Watched::beside(&seen)));
+    }
+    // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
+    pulp::Arch::new().dispatch(&mut steps);
+    let mut all = watched.iter_mut();
+    for (rows, (_, seen)) in of_blocks().zip(&steps.blocks) {
+        for (row, own) in rows.iter().zip(&mut all) {
+            *own = Watched::beside(&[seen.one(row.response % WIDTH)]);
+        }
+    }
+}
+
+/// Steps of one sample made ready, and the extremes of each block in them and before.
+struct Steps<'s> {
+    rows: &'s Rows,
+    from: usize,
+    /// Those that may be on the bridge.
+    axles: usize,
+    coordinates: Vec<f64>,
+    placed: Vec<Placed>,
+    blocks: Vec<(usize, Watched<Responding>)>,
+}
+
+impl pulp::WithSimd for &mut Steps<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let (width, axles) = (self.rows.width(), self.axles);
+        for (b, seen) in &mut self.blocks {
+            // From memory to registers and back as a whole: the compiler takes numbers side by side only so.
+            let mut own = *seen;
+            let mut number = self.from as f64;
+            for (i, coordinates) in self.coordinates.chunks_exact(width).enumerate() {
+                let values = self.rows.block(*b, coordinates, &self.placed[i * axles..][..axles]);
+                own.take(Responding::from(values), Responding::splat(number));
+                number += 1.0;
+            }
+            *seen = own;
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Moments between two steps at which an axle stands on a section or on an end of the bridge.
+//!
+//! A moment peaks, and a shear jumps, as an axle passes the section, and where the bridge has a free end every response
+//! jumps as an axle enters or leaves. These instants are part of the extremes, from the interpolated state and on both
+//! sides, so that the extremes converge with the square of the step. At a free end the axle load itself jumps, as the
+//! wheel drops on or off the deflected tip; there they converge with the step.
+
+use crate::recovery::{Place, Rows};
+use crate::selection::{Mark, Selection};
+
+/// Where axles are at the ends of steps.
+pub trait Positions {
+    /// How many there are.
+    fn axles(&self) -> usize;
+
+    /// Position of an axle after so many steps [m].
+    fn x(&self, step: usize, axle: usize) -> f64;
+
+    /// Position of an axle a fraction of the way through a step [m].
+    fn between(&self, step: usize, fraction: f64, axle: usize) -> f64 {
+        let (before, after) = (self.x(step - 1, axle), self.x(step, axle));
+        before + fraction * (after - before)
+    }
+}
+
+/// An axle passing one of the marks of a bridge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passing {
+    /// The step at whose end it has been passed.
+    pub step: usize,
+    /// The axle.
+    pub axle: usize,
+    /// Which of the marks.
+    pub mark: usize,
+    /// How far through that step.
+    pub fraction: f64,
+    /// Position of the front axle [m].
+    pub position: f64,
+}
+
+impl Passing {
+    /// In a step, past a mark `at` [m].
+    #[inline]
+    pub fn new(positions: &impl Positions, step: usize, axle: usize, (mark, at): (usize, f64)) -> Self {
+        let (from, to) = (positions.x(step - 1, axle), positions.x(step, axle));
+        let fraction = (at - from) / (to - from);
+        Passing { step, axle, mark, fraction, position: positions.between(step, fraction, 0) }
+    }
+
+    /// Its stops: as the axle comes, and as it goes, to the right or to the left.
+    pub fn stops(&self, look: &Selection, to_the_right: bool) -> [Stop; SIDES] {
+        let Passing { step, axle, fraction, position, .. } = *self;
+        let Mark { sides: [left, right], held, asked, tip, .. } = look.marks[self.mark];
+        let [before, after] = if to_the_right { [left, right] } else { [right, left] };
+        [(before, step - 1), (after, step)].map(|(side, row)| Stop {
+            step,
+            fraction,
+            axle,
+            side,
+            jump: (!held).then_some(row),
+            asked,
+            tip: tip.filter(|_| side.is_some()),
+            position,
+        })
+    }
+}
+
+/// Stops of a passing.
+pub const SIDES: usize = 2;
+
+/// A moment between two steps at which extremes are looked for.
+#[derive(Debug, Clone)]
+pub struct Stop {
+    /// The step at whose end it has been passed.
+    pub step: usize,
+    /// How far through that step.
+    pub fraction: f64,
+    /// The axle that passes.
+    pub axle: usize,
+    /// Where it stands.
+    pub side: Place,
+    /// If the load of that axle and the modal accelerations jump, the step whose they are.
+    pub jump: Option<usize>,
+    /// Which of [`Selection::asked`] to look at.
+    pub asked: usize,
+    /// The row of the shear just inside an end on which the axle stands, and the sign with which the axle adds to it.
+    pub tip: Option<(usize, f64)>,
+    /// Position of the front axle [m].
+    pub position: f64,
+}
+
+impl Stop {
+    /// Where all axles stand then.
+    pub fn places(&self, positions: &impl Positions, rows: &Rows, places: &mut Vec<Place>) {
+        places.clear();
+        places.extend((0..positions.axles()).map(|axle| match axle == self.axle {
+            true => self.side,
+            false => rows.place(positions.between(self.step, self.fraction, axle)),
+        }));
+    }
+
+    /// When, in steps of h [s].
+    pub fn when(&self, h: f64) -> f64 {
+        Stop::between(self.step, self.fraction, h)
+    }
+
+    /// When that is so far through a step, in steps of h [s].
+    pub fn between(step: usize, fraction: f64, h: f64) -> f64 {
+        let (before, after) = ((step - 1) as f64 * h, step as f64 * h);
+        before + fraction * (after - before)
+    }
+}
+
+/// What the axles do to the bridge at a stop.
+#[derive(Debug, Clone, Default)]
+pub struct PassingInfluence {
+    /// Influence of each axle on the rows asked for, row by row.
+    pub influence: Vec<f64>,
+    /// What static loads of one at the axles make of the coordinates, axle by axle.
+    pub statics: Vec<f64>,
+    places: Vec<Place>,
+}
+
+impl PassingInfluence {
+    /// Works it out for a stop.
+    pub fn fill(&mut self, stop: &Stop, positions: &impl Positions, rows: &Rows, look: &Selection) {
+        let PassingInfluence { influence, statics, places } = self;
+        stop.places(positions, rows, places);
+        influence.clear();
+        statics.clear();
+        for &row in &look.asked[stop.asked] {
+            let response = look.rows[row].response;
+            influence.extend(places.iter().map(|place| place.map_or(0.0, |p| rows.influence_of(response, p))));
+        }
+        places.iter().for_each(|place| rows.extend_static(*place, statics));
+    }
+}
+
+/// Follows axles past the marks, step by step, however they move.
+#[derive(Debug, Clone)]
+pub struct Follower {
+    to_the_right: Vec<bool>,
+    /// For every axle the number of marks it has passed.
+    passed: Vec<usize>,
+}
+
+impl Follower {
+    /// From where axles start, each in its direction.
+    pub fn new(positions: &impl Positions, to_the_right: Vec<bool>, marks: &[Mark]) -> Self {
+        let passed = to_the_right.iter().enumerate().map(|(axle, &right)| match positions.x(0, axle) {
+            x if right => marks.partition_point(|mark| mark.x <= x),
+            x => marks.len() - marks.partition_point(|mark| mark.x < x),
+        });
+        Follower { passed: passed.collect(), to_the_right }
+    }
+
+    /// Whether every axle has passed every mark.
+    pub fn is_past(&self, marks: &[Mark]) -> bool {
+        self.passed.iter().all(|&count| count == marks.len())
+    }
+
+    /// The stops of a step, in order.
+    #[inline]
+    pub fn stops(&mut self, positions: &impl Positions, step: usize, look: &Selection, stops: &mut Vec<Stop>) {
+        let marks = &look.marks;
+        for (axle, (passed, &right)) in self.passed.iter_mut().zip(&self.to_the_right).enumerate() {
+            let to = positions.x(step, axle);
+            while *passed < marks.len() {
+                let mark = if right { *passed } else { marks.len() - 1 - *passed };
+                let at = marks[mark].x;
+                if if right { at > to } else { at < to } {
+                    break;
+                }
+                *passed += 1;
+                stops.extend(Passing::new(positions, step, axle, (mark, at)).stops(look, right));
+            }
+        }
+    }
+}
