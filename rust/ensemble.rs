@@ -2,8 +2,9 @@
 //!
 //! A [`study`] is of crossings by kinds of event, and its [`sample`]s vary them. With prescribed motion in equal steps of
 //! space, where the axles are and what their loads do to the bridge is the same for every sample, whatever its speed, its
-//! road or its springs: one [`table`] serves all, and they march [`side_by_side`], [`placing`] their axles by it, in
-//! [`block`]s of lanes. Samples whose motion is their own take the same step one by one ([`single`]). Their steps are
+//! road or its springs: one [`table`] serves all, and they march [`side_by_side`], [`tabulated`] their axles by it, in
+//! [`block`]s of lanes. Samples whose motion is their own take the same step one by one ([`single`]). Either way they cross with their own
+//! vehicles and bridge where these are [`varied`]. Their steps are
 //! searched for the extremes of the responses by their [`bounds`], and what is found becomes the [`results`] of a [`run`]
 //! by its [`workers`]. Of the tables, which go on a [`shelf`]
 //! as far as there is [`room`], the [`clock`] stays.
@@ -14,7 +15,6 @@
 pub mod block;
 pub mod bounds;
 pub mod clock;
-pub mod placing;
 pub mod results;
 pub mod room;
 pub mod run;
@@ -24,6 +24,8 @@ pub mod side_by_side;
 pub mod single;
 pub mod study;
 pub mod table;
+pub mod tabulated;
+pub mod varied;
 pub mod workers;
 
 pub use run::Run;

@@ -13,7 +13,7 @@ use crate::tape::{Tape, Widths};
 ///
 /// Looked at in every step, so without a branch: the number is an `f64` and chosen along with the value.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Watched<L> {
+pub struct Peaks<L> {
     /// Largest.
     pub max: L,
     /// When.
@@ -24,37 +24,37 @@ pub struct Watched<L> {
     pub min_at: L,
 }
 
-impl<L: Lane> Watched<L> {
+impl<L: Lane> Peaks<L> {
     /// Nothing seen yet.
     #[inline(always)]
     pub fn nothing() -> Self {
         let (low, high, zero) = (L::splat(f64::NEG_INFINITY), L::splat(f64::INFINITY), L::splat(0.0));
-        Watched { max: low, max_at: zero, min: high, min_at: zero }
+        Peaks { max: low, max_at: zero, min: high, min_at: zero }
     }
 
     /// At rest at step zero.
     #[inline(always)]
     pub fn rest() -> Self {
         let zero = L::splat(0.0);
-        Watched { max: zero, max_at: zero, min: zero, min_at: zero }
+        Peaks { max: zero, max_at: zero, min: zero, min_at: zero }
     }
 
     /// That of one lane.
-    pub fn one(&self, lane: usize) -> Watched<f64> {
+    pub fn one(&self, lane: usize) -> Peaks<f64> {
         let [max, max_at, min, min_at] = [self.max, self.max_at, self.min, self.min_at].map(|of| of.get(lane));
-        Watched { max, max_at, min, min_at }
+        Peaks { max, max_at, min, min_at }
     }
 
     /// From one for each lane; the last is that of all that follow too.
-    pub fn beside(each: &[Watched<f64>]) -> Self {
-        let of = |part: fn(&Watched<f64>) -> f64| L::from_fn(|lane| part(&each[lane.min(each.len() - 1)]));
-        Watched { max: of(|w| w.max), max_at: of(|w| w.max_at), min: of(|w| w.min), min_at: of(|w| w.min_at) }
+    pub fn beside(each: &[Peaks<f64>]) -> Self {
+        let of = |part: fn(&Peaks<f64>) -> f64| L::from_fn(|lane| part(&each[lane.min(each.len() - 1)]));
+        Peaks { max: of(|w| w.max), max_at: of(|w| w.max_at), min: of(|w| w.min), min_at: of(|w| w.min_at) }
     }
 
     /// This, but for the lanes of a mask, which are as they were.
     #[inline(always)]
     pub fn unless(self, mask: L::Mask, before: Self) -> Self {
-        Watched {
+        Peaks {
             max: L::select(mask, before.max, self.max),
             max_at: L::select(mask, before.max_at, self.max_at),
             min: L::select(mask, before.min, self.min),
@@ -95,16 +95,16 @@ pub enum Instant {
 #[derive(Debug, Clone)]
 pub struct Seen<L> {
     /// By row, at steps.
-    pub steps: Vec<Watched<L>>,
+    pub steps: Vec<Peaks<L>>,
     /// By row, at stops.
-    pub stops: Vec<Watched<L>>,
+    pub stops: Vec<Peaks<L>>,
 }
 
 impl<L: Lane> Seen<L> {
     /// Of so many rows nothing, or at rest at step zero.
     pub fn beginning(rows: usize, at_rest: bool) -> Self {
-        let before = if at_rest { Watched::rest() } else { Watched::nothing() };
-        Seen { steps: vec![before; rows], stops: vec![Watched::nothing(); rows] }
+        let before = if at_rest { Peaks::rest() } else { Peaks::nothing() };
+        Seen { steps: vec![before; rows], stops: vec![Peaks::nothing(); rows] }
     }
 
     /// Largest and smallest of a row.
@@ -117,8 +117,8 @@ impl<L: Lane> Seen<L> {
     /// Largest and smallest of a row in one lane, each with its instant; `when` that is. Of equal values the first counts,
     /// and if they are one instant the stop.
     pub fn sides(&self, row: usize, lane: usize, when: impl Fn(Instant) -> f64) -> [(f64, Instant); 2] {
-        let pick = |of: fn(&Watched<L>) -> (L, L), sense: f64| {
-            let number = |watched: &Watched<L>| {
+        let pick = |of: fn(&Peaks<L>) -> (L, L), sense: f64| {
+            let number = |watched: &Peaks<L>| {
                 let (value, at) = of(watched);
                 (value.get(lane), at.get(lane) as usize)
             };
@@ -168,7 +168,7 @@ pub fn interpolate<L: Lane>(stop: &Stop, [before, after]: [&[L]; 2], widths: &Wi
 /// Takes in a stop, given coordinates and loads then, and what they do to the rows asked for.
 #[inline(always)]
 pub fn at_stop<L: Lane>(
-    watched: &mut [Watched<L>],
+    watched: &mut [Peaks<L>],
     look: &Selection,
     (stop, number, moment): (&Stop, usize, &PassingInfluence),
     then: &[L],
@@ -192,7 +192,7 @@ pub fn at_stop<L: Lane>(
 /// To bound responses chunk by chunk, as [`crate::ensemble::bounds`] does, pays where many samples share the influence of
 /// their loads. For a few it is less work to evaluate every response at every step, response beside response, from the
 /// same numbers in the same order: the extremes are the same bits.
-pub fn at_steps<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Selection, tape: &Tape<L>, places: &[Place]) {
+pub fn at_steps<L: Lane>(watched: &mut [Peaks<L>], rows: &Rows, look: &Selection, tape: &Tape<L>, places: &[Place]) {
     let (c, axles) = (tape.widths.coordinates, if places.is_empty() { 0 } else { tape.widths.axles });
     let mut steps = Steps {
         rows,
@@ -211,18 +211,18 @@ pub fn at_steps<L: Lane>(watched: &mut [Watched<L>], rows: &Rows, look: &Selecti
     let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
     let mut all = watched.iter();
     for rows in of_blocks() {
-        let mut seen = [Watched::<f64>::nothing(); WIDTH];
+        let mut seen = [Peaks::<f64>::nothing(); WIDTH];
         for (row, own) in rows.iter().zip(&mut all) {
             seen[row.response % WIDTH] = own.one(0);
         }
-        steps.blocks.push((rows[0].response / WIDTH, Watched::beside(&seen)));
+        steps.blocks.push((rows[0].response / WIDTH, Peaks::beside(&seen)));
     }
     // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
     pulp::Arch::new().dispatch(&mut steps);
     let mut all = watched.iter_mut();
     for (rows, (_, seen)) in of_blocks().zip(&steps.blocks) {
         for (row, own) in rows.iter().zip(&mut all) {
-            *own = Watched::beside(&[seen.one(row.response % WIDTH)]);
+            *own = Peaks::beside(&[seen.one(row.response % WIDTH)]);
         }
     }
 }
@@ -235,7 +235,7 @@ struct Steps<'s> {
     axles: usize,
     coordinates: Vec<f64>,
     placed: Vec<Placed>,
-    blocks: Vec<(usize, Watched<Responding>)>,
+    blocks: Vec<(usize, Peaks<Responding>)>,
 }
 
 impl pulp::WithSimd for &mut Steps<'_> {

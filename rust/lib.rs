@@ -57,8 +57,8 @@
 //! let plan = Plan::new(Arc::new(analysis), vec![vec![Passage::of(lorry)]], settings).roads(Arc::new(roads), 1);
 //! let study = plan.quantities(&[Quantity::Moment]).study()?;
 //! let run = study.run(&Samples::at_speed(0, 100, 20.0), &Workers::new(None)?, &Progress::default())?;
-//! let largest = run.results.layout.range(Column::Responses).start;
-//! let each = run.results.numbers.chunks(run.results.layout.width()).map(|sample| sample[largest] / at_rest);
+//! let largest = run.results.format.range(Column::Responses).start;
+//! let each = run.results.numbers.chunks(run.results.format.width()).map(|sample| sample[largest] / at_rest);
 //! assert!(each.clone().all(|factor| (0.8..2.0).contains(&factor)));
 //! assert!(each.fold(0.0, f64::max) > dynamic / at_rest);
 //! # Ok::<(), spanwise::error::Error>(())

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::extremes::Watched;
+use crate::extremes::Peaks;
 use crate::lane::Lane;
 use crate::tape::Tape;
 
@@ -10,7 +10,7 @@ use crate::tape::Tape;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Ride<L> {
     /// Extremes of the axle loads.
-    pub loads: Vec<Watched<L>>,
+    pub loads: Vec<Peaks<L>>,
     /// Sums of the squares by which the loads differ from their static values, on the bridge.
     pub deviations: Vec<L>,
     /// Steps off the road.
@@ -32,7 +32,7 @@ impl<L: Lane> Ride<L> {
     pub fn nothing(axles: usize, bodies: usize) -> Self {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         Ride {
-            loads: vec![Watched::nothing(); axles],
+            loads: vec![Peaks::nothing(); axles],
             deviations: vec![zero; axles],
             aloft: vec![zero; axles],
             lift_offs: vec![zero; axles],

@@ -97,8 +97,8 @@ fn kinds_of_few_samples_are_as_good_as_kinds_of_many() {
 fn nothing_about_the_work_changes_a_bit_of_a_mixed_study() {
     let (study, samples) = (mixed(), mixed_samples(5, 70));
     let found = run(&study, &samples, Isa::chosen().unwrap(), 2);
-    let (results, layout) = (&found.results, found.results.layout);
-    let lifted = |sample: usize| row(results, sample).1[2 * (layout.responses + layout.axles)..].iter().any(|&n| n > 0);
+    let (results, format) = (&found.results, found.results.format);
+    let lifted = |sample: usize| row(results, sample).1[2 * (format.responses + format.axles)..].iter().any(|&n| n > 0);
     let lifting = (0..samples.count).filter(|&sample| lifted(sample)).count();
     println!("{lifting} of {} lift off; marches {:?}", samples.count, found.marches);
     assert!(lifting > 5, "{lifting}");

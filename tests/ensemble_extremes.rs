@@ -124,12 +124,12 @@ fn peaks_of_the_tail_are_found() {
     let speeds = vec![60.0, 80.0, 100.0, 120.0];
     let samples = Samples { count: speeds.len(), speeds, ..Samples::at_speed(0, 1, 1.0) };
     let found = run(&study, &samples, Isa::chosen().unwrap(), 1);
-    let layout = found.results.layout;
+    let format = found.results.format;
     let mut late = 0;
     for sample in 0..samples.count {
         let (_, instants) = row(&found.results, sample);
         let steps = study.path(found.marches[found.results.marches[sample] as usize]).steps;
-        late += instants[..2 * layout.responses]
+        late += instants[..2 * format.responses]
             .iter()
             .filter(|&&i| matches!(decoded(i), Instant::Step(s) if s > steps))
             .count();
@@ -146,7 +146,7 @@ fn peaks_of_the_tail_are_found() {
     for sample in 0..samples.count {
         let [long, short] = [&found, &shorter].map(|run| column(&run.results, sample, Column::Responses));
         for (i, (long, short)) in long.iter().zip(short).enumerate() {
-            let further = if i < layout.responses { long - short } else { short - long };
+            let further = if i < format.responses { long - short } else { short - long };
             assert!(further >= 0.0, "sample {sample}, {i}: {long}, {short}");
             exceeded += usize::from(further > 0.0);
         }

@@ -198,7 +198,7 @@ fn check(case: Case) -> Result<(), TestCaseError> {
     let again = run(Isa::Baseline, 1, 32).unwrap();
     prop_assert_eq!(found.results.hash(), again.results.hash());
     prop_assert_eq!(&found.results.failures, &again.results.failures);
-    let (results, layout) = (&found.results, found.results.layout);
+    let (results, format) = (&found.results, found.results.format);
     prop_assert_eq!(results.digests.len(), samples.count);
     for sample in 0..samples.count {
         let (numbers, instants) = row(results, sample);
@@ -209,13 +209,13 @@ fn check(case: Case) -> Result<(), TestCaseError> {
         let vehicle = &vehicles[samples.kind(sample)];
         let (axles, bodies) = (vehicle.assembly().contacts.len(), vehicle.bodies().len());
         for (which, width, count) in [
-            (Column::Responses, layout.responses, layout.responses),
-            (Column::Statics, layout.responses, layout.responses),
-            (Column::Loads, layout.axles, axles),
-            (Column::LoadCoefficients, layout.axles, axles),
-            (Column::Aloft, layout.axles, axles),
-            (Column::Accelerations, layout.bodies, bodies),
-            (Column::Vibrations, layout.bodies, bodies),
+            (Column::Responses, format.responses, format.responses),
+            (Column::Statics, format.responses, format.responses),
+            (Column::Loads, format.axles, axles),
+            (Column::LoadCoefficients, format.axles, axles),
+            (Column::Aloft, format.axles, axles),
+            (Column::Accelerations, format.bodies, bodies),
+            (Column::Vibrations, format.bodies, bodies),
         ] {
             for (there, padding) in split(column(results, sample, which), width, count) {
                 prop_assert!(there.iter().all(|v| v.is_finite()), "sample {}, {:?}", sample, which);
@@ -224,13 +224,13 @@ fn check(case: Case) -> Result<(), TestCaseError> {
             }
         }
         // The largest is not less than the smallest, and every instant is one.
-        let sides = column(results, sample, Column::Responses).split_at(layout.responses);
+        let sides = column(results, sample, Column::Responses).split_at(format.responses);
         prop_assert!(sides.0.iter().zip(sides.1).all(|(max, min)| max >= min));
         let (march, speed) = (results.marches[sample], samples.speed(sample, 0));
         let path = study.path(found.marches[march as usize]);
         let last = path.steps as f64 + column(results, sample, Column::Tail)[0] * speed / path.advance + 1.0;
         let hands = found.clock.of(march);
-        for &instant in &instants[..2 * layout.responses] {
+        for &instant in &instants[..2 * format.responses] {
             let known = match decoded(instant) {
                 Instant::Stop(_) => hands.when(speed, instant).0.is_finite(),
                 Instant::Step(step) => step as f64 <= last,

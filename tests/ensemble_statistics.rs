@@ -32,7 +32,7 @@ const TWICE: f64 = 1e-8;
 /// From all numbers of a history: spread of the loads, their zeros, accelerations of the bodies.
 fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] {
     let found = run(study, samples, Isa::chosen().unwrap(), 2);
-    let (results, layout) = (&found.results, found.results.layout);
+    let (results, format) = (&found.results, found.results.format);
     let length = study.analysis.rows.mesh().length();
     let (mut lifts, mut at_the_end) = (0, 0);
     for sample in 0..samples.count {
@@ -59,7 +59,7 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
             near("time aloft", column(results, sample, Column::Aloft)[k], aloft.sum(), 1.0);
             let lift_offs = (0..=history.last_on).filter(|&i| off(i) && (i == 0 || !off(i - 1))).count();
             let (_, instants) = row(results, sample);
-            assert_eq!(instants[2 * (layout.responses + layout.axles) + k] as usize, lift_offs, "{name}, {sample}");
+            assert_eq!(instants[2 * (format.responses + format.axles) + k] as usize, lift_offs, "{name}, {sample}");
             lifts += lift_offs;
             at_the_end += usize::from(off(history.last_on));
         }
@@ -79,13 +79,13 @@ fn check_statistics(study: &Study, samples: &Samples, name: &str) -> [usize; 2] 
 
 /// Numbers where there are an axle and a body, nothing elsewhere.
 fn check_padding(results: &Results, sample: usize, axles: usize, bodies: usize) {
-    let layout = results.layout;
+    let format = results.format;
     let parts = [
-        (Column::Loads, layout.axles, axles),
-        (Column::LoadCoefficients, layout.axles, axles),
-        (Column::Aloft, layout.axles, axles),
-        (Column::Accelerations, layout.bodies, bodies),
-        (Column::Vibrations, layout.bodies, bodies),
+        (Column::Loads, format.axles, axles),
+        (Column::LoadCoefficients, format.axles, axles),
+        (Column::Aloft, format.axles, axles),
+        (Column::Accelerations, format.bodies, bodies),
+        (Column::Vibrations, format.bodies, bodies),
     ];
     for (which, width, count) in parts {
         for side in column(results, sample, which).chunks(width.max(1)) {
@@ -106,7 +106,7 @@ fn statistics_are_those_of_the_history() {
     let settings = Settings { tail: Tail::Fixed(0.3), ..approach() };
     let study = study_of(analysis, vec![vec![Passage::of(forces)]], settings, None, None, &ALL).unwrap();
     let found = run(&study, &samples(3), Isa::Baseline, 1).results;
-    assert_eq!(found.layout.bodies, 0);
+    assert_eq!(found.format.bodies, 0);
     assert!(column(&found, 1, Column::LoadCoefficients).iter().all(|&v| v == 0.0));
 }
 
@@ -162,7 +162,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
             let factors = vec![Factors { parameter, width: 1, values: values.to_vec() }];
             let samples = Samples { factors, ..Samples::at_speed(3, values.len(), 20.0) };
             let Run { results: found, at_rest: alike, .. } = run(&study, &samples, Isa::chosen().unwrap(), 1);
-            assert_eq!(found.layout.own_statics, parameter != Parameter::BridgeDamping);
+            assert_eq!(found.format.own_statics, parameter != Parameter::BridgeDamping);
             for (sample, &value) in values.iter().enumerate() {
                 let built = match parameter {
                     Parameter::BodyMass => made(stiffer(1.0, 0.02, recovery), heavier(value)),
@@ -175,11 +175,11 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                     let off = crate::problems::largest_difference(found, expected) / largest_magnitude(expected);
                     assert!(off <= TWICE, "{recovery:?}, {parameter:?} {value}, {what}: {off:e}");
                 };
-                let at_rest = match found.layout.own_statics {
+                let at_rest = match found.format.own_statics {
                     true => column(&found, sample, Column::Statics),
                     false => &alike[0],
                 };
-                let responses = found.layout.responses;
+                let responses = found.format.responses;
                 for side in 0..2 {
                     for quantity in ALL {
                         let all = study.analysis.responses.range(quantity);
@@ -196,7 +196,7 @@ fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
                     }
                 }
                 near("loads", column(&found, sample, Column::Loads), column(&own, 0, Column::Loads));
-                let [accelerations, expected] = [&found, &own].map(|r| r.layout.range(Column::Accelerations));
+                let [accelerations, expected] = [&found, &own].map(|r| r.format.range(Column::Accelerations));
                 near("accelerations", &row(&found, sample).0[accelerations], &row(&own, 0).0[expected]);
             }
         }

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use spanwise::extremes::Watched;
+use spanwise::extremes::Peaks;
 use spanwise::lane::Lane;
 use spanwise::lane::bits::Bits;
 use spanwise::lane::dispatch::{InLanes, Isa, with};
@@ -171,12 +171,12 @@ impl<L: Lane> Work for Seen<'_, L> {
     fn run(self) -> Self::Output {
         let mut all = Vec::new();
         for rows in self.0.chunks(L::SAMPLES) {
-            let mut watched = Watched::<L>::nothing();
+            let mut watched = Peaks::<L>::nothing();
             for (step, _) in rows[0].iter().enumerate() {
                 let value = L::from_fn(|lane| rows[lane.min(rows.len() - 1)][step]);
                 watched.take(value, L::splat(step as f64));
             }
-            let Watched { max, max_at, min, min_at } = watched;
+            let Peaks { max, max_at, min, min_at } = watched;
             all.extend((0..rows.len()).map(|lane| [max, max_at, min, min_at].map(|v| v.get(lane))));
         }
         all

@@ -21,7 +21,7 @@ pub const TOGETHER: usize = 1024;
 
 /// A vehicle's columns in a [`History`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Columns {
+pub struct VehicleColumns {
     /// Its axles among all, front first.
     pub axles: Range<usize>,
     /// Its numbers in a row of `motion`: value, velocity and acceleration of each of its coordinates, then of its travel.
@@ -44,7 +44,7 @@ pub struct History {
     /// Number of friction elements beside those of massless axles.
     pub frictions: usize,
     /// The vehicles.
-    pub vehicles: Vec<Columns>,
+    pub vehicles: Vec<VehicleColumns>,
     /// Time step [s]; the last row may end a shorter one.
     pub step: f64,
     /// When the last vehicle had left the bridge, or stood for good [s].
@@ -186,7 +186,7 @@ impl History {
     /// are on it; `bodies` are the vertical displacements of its bodies, as rows over its coordinates.
     pub fn rides(&self, bodies: &[Vec<Vec<f64>>], length: f64) -> Vec<Ride<f64>> {
         let mut tape = Tape::new();
-        let rides = self.vehicles.iter().zip(bodies).map(|(Columns { axles, motion, .. }, bodies)| {
+        let rides = self.vehicles.iter().zip(bodies).map(|(VehicleColumns { axles, motion, .. }, bodies)| {
             let widths = Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, rates: false };
             let mut ride = Ride::nothing(axles.len(), bodies.len());
             let (there, end) = (self.on_bridge(axles, length), self.last_on + 1);

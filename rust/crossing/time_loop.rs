@@ -1,6 +1,6 @@
 //! A crossing step by step: brakes, standing vehicles, ends, and what is recorded.
 
-use crate::crossing::history::{Columns, History};
+use crate::crossing::history::{History, VehicleColumns};
 use crate::crossing::tail::{self, Watch};
 use crate::error::Error;
 use crate::geometry::Geometry;
@@ -26,7 +26,7 @@ const POLL_EVERY: usize = 1024;
 const PAIRS: usize = 1 << 20;
 
 /// How the contacts come from one step to the next.
-pub trait Way: Geometry<f64> {
+pub trait Contacts: Geometry<f64> {
     /// The first state.
     fn start(&self, rolling: &mut Rolling, starter: &mut Stepper<f64>, speeds: &[f64])
     -> Result<State<f64>, Unsettled>;
@@ -43,7 +43,7 @@ pub trait Way: Geometry<f64> {
     fn stop(&mut self, contact: usize);
 }
 
-impl<M: Fn(usize, usize) -> Coordinate<f64>> Way for Prescribed<'_, M> {
+impl<M: Fn(usize, usize) -> Coordinate<f64>> Contacts for Prescribed<'_, M> {
     fn start(&self, _: &mut Rolling, starter: &mut Stepper<f64>, speeds: &[f64]) -> Result<State<f64>, Unsettled> {
         starter.start(speeds, self)
     }
@@ -56,7 +56,7 @@ impl<M: Fn(usize, usize) -> Coordinate<f64>> Way for Prescribed<'_, M> {
     fn stop(&mut self, _: usize) {}
 }
 
-impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Way for Free<'_, M> {
+impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Contacts for Free<'_, M> {
     fn start(
         &self,
         rolling: &mut Rolling,
@@ -132,7 +132,7 @@ impl<'a> TimeLoop<'a> {
             let assembly = course.vehicle.assembly();
             let (motion, first) = (history.motion_width(), history.frictions);
             history.frictions += assembly.frictions.len();
-            history.vehicles.push(Columns {
+            history.vehicles.push(VehicleColumns {
                 axles: course.axles.clone(),
                 motion: motion..motion + 3 * (assembly.mass.nrows() + 1),
                 frictions: first..history.frictions,
@@ -163,7 +163,7 @@ impl<'a> TimeLoop<'a> {
     }
 
     /// Marches until every vehicle has left or stands, and the tail is over, of which `watch` has its say.
-    pub fn run<G: Way>(
+    pub fn run<G: Contacts>(
         mut self,
         geometry: &mut G,
         watch: &mut dyn Watch,
@@ -294,7 +294,7 @@ impl<'a> TimeLoop<'a> {
     }
 
     /// Sees to freely rolling vehicles that have come to rest.
-    fn stand(&mut self, time: f64, travel: &mut [Coordinate<f64>], geometry: &mut impl Way) -> Result<(), Error> {
+    fn stand(&mut self, time: f64, travel: &mut [Coordinate<f64>], geometry: &mut impl Contacts) -> Result<(), Error> {
         for (v, course) in self.courses.iter().enumerate() {
             if !course.rolls || self.history.vehicles[v].stopped.is_some() || travel[v].v > 0.0 {
                 continue;

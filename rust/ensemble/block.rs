@@ -4,10 +4,10 @@
 use std::ops::Range;
 
 use super::bounds::survey;
-use super::placing::Shared;
 use super::table::{Chunk, Table};
+use super::tabulated::Tabulated;
 use crate::crossing::tail::FreeRows;
-use crate::extremes::{Seen, Watched, at_steps, at_stop, interpolate};
+use crate::extremes::{Peaks, Seen, at_steps, at_stop, interpolate};
 use crate::lane::{Lane, Lanes, Work};
 use crate::recovery::Rows;
 use crate::road::random::Synthesis;
@@ -60,7 +60,7 @@ pub struct Steppers<L> {
 #[derive(Debug, Clone)]
 pub struct Group<'a, L> {
     /// Where they are.
-    pub geometry: Shared<'a, L>,
+    pub geometry: Tabulated<'a, L>,
     /// Their bridges, if these differ.
     pub bridge: Option<BridgeFactors<L>>,
     /// When they end.
@@ -91,7 +91,7 @@ pub enum Trouble {
 
 /// Where a block marches, and what is looked at.
 #[derive(Debug, Clone, Copy)]
-pub struct Way<'a> {
+pub struct Scene<'a> {
     /// The shared geometry.
     pub table: &'a Table,
     /// The rows of the bridge.
@@ -136,7 +136,7 @@ impl<L: Lane> Default for Scratch<L> {
     }
 }
 
-/// One group on its way.
+/// One group on its scene.
 struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
@@ -223,7 +223,7 @@ enum Where {
 struct Stepping<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     steppers: &'s mut Steppers<L>,
-    way: &'s Way<'s>,
+    scene: &'s Scene<'s>,
     stretch: &'s mut Tape<L>,
     place: Where,
     steps: Range<usize>,
@@ -235,7 +235,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, way, stretch, place, steps, stop } = self;
+        let Stepping { traveller, steppers, scene, stretch, place, steps, stop } = self;
         let widths = stretch.widths;
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps.clone() {
@@ -250,7 +250,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
             if place == Where::Tail {
                 traveller.end(step, [before, row]);
             }
-            if way.closely && !traveller.sound(step) {
+            if scene.closely && !traveller.sound(step) {
                 return Err(Trouble::Failed(step, None));
             }
         }
@@ -302,7 +302,7 @@ impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
 struct Deciding<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     found: &'s mut Found<L>,
-    way: &'s Way<'s>,
+    scene: &'s Scene<'s>,
     step: usize,
 }
 
@@ -311,11 +311,11 @@ impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Deciding { traveller, found, way, step } = self;
+        let Deciding { traveller, found, scene, step } = self;
         let reach = traveller.reach();
         if traveller.group.ends.free {
             let load = traveller.static_loads.iter().fold(L::splat(0.0), |sum, load| sum + *load);
-            let settled = way.free.settled(&reach, load, |row| found.seen.reached(row));
+            let settled = scene.free.settled(&reach, load, |row| found.seen.reached(row));
             let ending = traveller.group.ends.end(settled, step);
             if let Some(found) = &mut found.reach {
                 found.select(ending, &reach);
@@ -328,7 +328,7 @@ impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
 /// The same chunk being looked at: all but the responses at its steps.
 struct Looking<'s, L> {
     found: &'s mut Found<L>,
-    way: &'s Way<'s>,
+    scene: &'s Scene<'s>,
     static_loads: &'s [L],
     ends: &'s Ends<L>,
     place: Where,
@@ -345,10 +345,10 @@ impl<L: Lane> Work for Looking<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Looking { found, way, ends, place, steps, stop, stretch, between, .. } = self;
+        let Looking { found, scene, ends, place, steps, stop, stretch, between, .. } = self;
         let Found { seen, ride, .. } = found;
         let widths = stretch.widths;
-        let last = way.table.path.steps;
+        let last = scene.table.path.steps;
         stretch.take(steps.len());
         // What becomes of vehicles behind the bridge is none of its business.
         if place != Where::Tail {
@@ -358,12 +358,12 @@ impl<L: Lane> Work for Looking<'_, L> {
         if place == Where::Approach {
             return;
         }
-        while let Some(next) = way.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
+        while let Some(next) = scene.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
             let sides = [stretch.row(next.step - 1), stretch.row(next.step)];
             let before = (next.step > last).then(|| seen.stops.clone());
-            let moment = way.table.moment(*stop, way.rows, way.look, self.moment);
+            let moment = scene.table.moment(*stop, scene.rows, scene.look, self.moment);
             interpolate(next, sides, &widths, between);
-            at_stop(&mut seen.stops, way.look, (next, *stop, moment), between);
+            at_stop(&mut seen.stops, scene.look, (next, *stop, moment), between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
             for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
@@ -376,7 +376,7 @@ impl<L: Lane> Work for Looking<'_, L> {
 
 /// The responses at the steps of a stretch being looked at.
 struct Surveying<'s, L> {
-    watched: &'s mut [Watched<L>],
+    watched: &'s mut [Peaks<L>],
     look: &'s Selection,
     stretch: &'s Tape<L>,
     chunks: Option<&'s [Chunk]>,
@@ -394,13 +394,13 @@ impl<L: Lane> Work for Surveying<'_, L> {
 
 /// Looks at the responses at the steps of a stretch, with axles on the bridge or not.
 fn look_at_steps<L: Lanes>(
-    way: &Way<'_>,
-    watched: &mut [Watched<L>],
+    scene: &Scene<'_>,
+    watched: &mut [Peaks<L>],
     stretch: &Tape<L>,
     loaded: bool,
     (glanced, own_chunks): (&mut Vec<[L; 2]>, &mut Vec<Chunk>),
 ) {
-    let Way { table, rows, look, .. } = *way;
+    let Scene { table, rows, look, .. } = *scene;
     let steps = stretch.from..stretch.from + stretch.steps;
     if L::SAMPLES == 1 && !table.laid_out {
         return at_steps(watched, rows, look, stretch, if loaded { table.places(steps) } else { &[] });
@@ -410,14 +410,14 @@ fn look_at_steps<L: Lanes>(
 }
 
 /// Marches a group of samples through the table.
-pub fn march<L: Lanes>(
-    way: &Way<'_>,
+pub fn cross_group<L: Lanes>(
+    scene: &Scene<'_>,
     group: &mut Group<'_, L>,
     steppers: &mut Steppers<L>,
     scratch: &mut Scratch<L>,
     stop: StopToken<'_>,
 ) -> Result<Found<L>, Trouble> {
-    let Way { table, rows, look, .. } = *way;
+    let Scene { table, rows, look, .. } = *scene;
     let steps = table.path.steps;
     let bodies = group.bodies.len();
     let widths = Widths::of(rows, table.axles(), bodies);
@@ -460,7 +460,7 @@ pub fn march<L: Lanes>(
         let alone = with_vehicle.end.max(from);
         if !with_vehicle.is_empty() {
             let stepping =
-                Stepping { traveller: &mut traveller, steppers, way, stretch, place, steps: with_vehicle, stop };
+                Stepping { traveller: &mut traveller, steppers, scene, stretch, place, steps: with_vehicle, stop };
             L::dispatch(stepping)?;
         }
         if place == Where::Tail {
@@ -470,7 +470,7 @@ pub fn march<L: Lanes>(
         }
         let looking = Looking {
             found: &mut found,
-            way,
+            scene,
             static_loads: &traveller.static_loads,
             ends: &traveller.group.ends,
             place,
@@ -485,11 +485,11 @@ pub fn march<L: Lanes>(
             // On the approach the bridge is at rest.
             if place != Where::Approach {
                 let loaded = place == Where::Bridge;
-                look_at_steps(way, &mut found.seen.steps, stretch, loaded, (glanced, own_chunks));
+                look_at_steps(scene, &mut found.seen.steps, stretch, loaded, (glanced, own_chunks));
             }
             stretch.go_on();
             if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
-                L::dispatch(Deciding { traveller: &mut traveller, found: &mut found, way, step: to - 1 });
+                L::dispatch(Deciding { traveller: &mut traveller, found: &mut found, scene, step: to - 1 });
             }
         }
         from = to;
@@ -539,8 +539,8 @@ impl<L: Lane, F: Fn(usize) -> u64> Work for Drawing<'_, L, F> {
 }
 
 /// The static extremes under loads that differ from sample to sample.
-pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
-    let Way { table, rows, look, .. } = *way;
+pub fn rest<L: Lanes>(scene: &Scene<'_>, loads: &[L]) -> Seen<L> {
+    let Scene { table, rows, look, .. } = *scene;
     let widths = Widths { felt: true, ..Widths::of(rows, table.axles(), 0) };
     let mut seen = Seen::beginning(look.rows.len(), table.first > 0);
     let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Tape::new());
@@ -548,8 +548,8 @@ pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
     for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
         let end = (start + longest * CHUNK).min(table.path.steps + 1);
         stretch.begin(widths, start, (end - start).div_ceil(CHUNK));
-        L::dispatch(Resting { way, loads, steps: start..end, stretch: &mut stretch });
-        look_at_steps(way, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
+        L::dispatch(Resting { scene, loads, steps: start..end, stretch: &mut stretch });
+        look_at_steps(scene, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
     }
     let mut own_moment = PassingInfluence::default();
     let mut then = vec![L::splat(0.0); widths.used()];
@@ -563,7 +563,7 @@ pub fn rest<L: Lanes>(way: &Way<'_>, loads: &[L]) -> Seen<L> {
 
 /// Static loads going over the bridge: a stretch of steps.
 struct Resting<'s, L> {
-    way: &'s Way<'s>,
+    scene: &'s Scene<'s>,
     loads: &'s [L],
     steps: Range<usize>,
     stretch: &'s mut Tape<L>,
@@ -574,11 +574,11 @@ impl<L: Lane> Work for Resting<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Resting { way, loads, steps, stretch } = self;
+        let Resting { scene, loads, steps, stretch } = self;
         let mut scratch = Vec::new();
         for step in steps.clone() {
             let [_, row] = stretch.row_mut(step);
-            write_at_rest(way.table.statics(step, way.rows, &mut scratch), loads, row);
+            write_at_rest(scene.table.statics(step, scene.rows, &mut scratch), loads, row);
         }
         stretch.take_all(steps.len());
     }

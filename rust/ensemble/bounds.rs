@@ -6,7 +6,7 @@
 //! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
 
 use super::table::{Chunk, middle};
-use crate::extremes::{Watched, value};
+use crate::extremes::{Peaks, value};
 use crate::lane::Lane;
 use crate::selection::Row;
 use crate::tape::{PART, PARTS, Tape};
@@ -15,7 +15,7 @@ use crate::tape::{PART, PARTS, Tape};
 /// there is no axle on the bridge. `glanced` is scratch.
 #[inline(always)]
 pub fn survey<L: Lane>(
-    watched: &mut [Watched<L>],
+    watched: &mut [Peaks<L>],
     rows: &[Row],
     stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,
@@ -39,7 +39,7 @@ pub fn survey<L: Lane>(
 fn survey_sizes<L: Lane>(
     c: usize,
     a: usize,
-    watched: &mut [Watched<L>],
+    watched: &mut [Peaks<L>],
     rows: &[Row],
     stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,

@@ -9,7 +9,7 @@ use crate::statistics::Ride;
 
 /// Where everything stands in a sample's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Layout {
+pub struct Format {
     /// Responses looked at.
     pub responses: usize,
     /// Axles, at most.
@@ -22,7 +22,7 @@ pub struct Layout {
     pub own_times: bool,
 }
 
-/// A column of numbers in [`Layout`]; of extremes the largest come first, then the smallest.
+/// A column of numbers in [`Format`]; of extremes the largest come first, then the smallest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Column {
     /// Extremes of the responses.
@@ -49,7 +49,7 @@ pub enum Column {
     Tail,
 }
 
-impl Layout {
+impl Format {
     /// Pairs of extremes: largest of all, smallest of all.
     fn extremes(&self) -> usize {
         2 * (self.responses + self.axles)
@@ -116,9 +116,9 @@ impl Layout {
 /// A sample's rows, to be filled.
 #[derive(Debug)]
 pub struct Record<'a> {
-    /// Numbers, after [`Layout::range`].
+    /// Numbers, after [`Format::range`].
     pub numbers: &'a mut [f64],
-    /// Instants, after [`Layout::instants`]; see [`encoded`].
+    /// Instants, after [`Format::instants`]; see [`encoded`].
     pub instants: &'a mut [u32],
 }
 
@@ -151,22 +151,22 @@ impl Record<'_> {
     /// Writes down the ride of a vehicle in one lane, in steps of h [s]; its axles and bodies come after so many others.
     pub fn write_ride<L: Lane>(
         &mut self,
-        layout: &Layout,
+        format: &Format,
         ride: &Ride<L>,
         lane: usize,
         [axles, bodies]: [usize; 2],
         static_loads: &[f64],
         h: f64,
     ) {
-        let column = |column: Column| layout.range(column).start;
+        let column = |column: Column| format.range(column).start;
         for (own, &static_load) in static_loads.iter().enumerate() {
             let (k, watched) = (axles + own, &ride.loads[own]);
             for (side, value) in [watched.max, watched.min].into_iter().enumerate() {
-                self.numbers[column(Column::Loads) + side * layout.axles + k] = value.get(lane) + 0.0;
+                self.numbers[column(Column::Loads) + side * format.axles + k] = value.get(lane) + 0.0;
             }
             self.numbers[column(Column::LoadCoefficients) + k] = ride.load_coefficient(own, lane, static_load);
             self.numbers[column(Column::Aloft) + k] = ride.aloft[own].get(lane) * h;
-            self.instants[2 * (layout.responses + layout.axles) + k] = ride.lift_offs[own].get(lane) as u32;
+            self.instants[2 * (format.responses + format.axles) + k] = ride.lift_offs[own].get(lane) as u32;
         }
         for own in 0..ride.accelerations.len() {
             let b = bodies + own;
@@ -205,7 +205,7 @@ pub struct Failure {
 #[derive(Debug, Clone)]
 pub struct Results {
     /// Where things are in the rows.
-    pub layout: Layout,
+    pub format: Format,
     /// Numbers, sample after sample.
     pub numbers: Vec<f64>,
     /// Instants, sample after sample.

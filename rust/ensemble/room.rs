@@ -2,10 +2,10 @@
 
 use super::block::KEPT;
 use super::clock::Pace;
-use super::placing::COUPLED;
 use super::sample::Samples;
 use super::study::{March, Study};
 use super::table::{Below, READY};
+use super::tabulated::COUPLED;
 use super::workers::Workers;
 use crate::error::Error;
 use crate::memory;

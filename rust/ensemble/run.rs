@@ -7,13 +7,14 @@ use std::sync::{Mutex, PoisonError, RwLock};
 use rayon::prelude::*;
 
 use super::clock::{Clock, Pace};
-use super::results::{Failure, Layout, Record, Results};
+use super::results::{Failure, Format, Record, Results};
 use super::room::Room;
 use super::sample::Samples;
-use super::shelf::{FEW, Shared, Shelf};
+use super::shelf::{FEW, Shelf};
 use super::side_by_side::{Part, Task};
 use super::single;
 use super::study::{March, Study};
+use super::varied::vehicles;
 use super::workers::{BLOCK, Progress, Workers};
 use crate::error::Error;
 use crate::float_mode::Standard;
@@ -34,9 +35,9 @@ impl Study {
             let fastest = samples.speeds.iter().copied().fold(0.0, f64::max);
             (0..self.kinds.len()).try_for_each(|kind| self.check_road(kind, fastest))?;
         }
-        let layout = self.layout(samples);
+        let format = self.format(samples);
         let count = samples.count;
-        check_room(count, &layout)?;
+        check_room(count, &format)?;
         let (own, lost) = if self.shares { self.marches(samples) } else { (vec![(0, 0); count], Vec::new()) };
         if let Some(failure) = lost.first().filter(|_| lost.len() == count) {
             // What no sample can do is asked too much.
@@ -54,14 +55,14 @@ impl Study {
         let number: BTreeMap<March, u32> = marches.iter().zip(0..).map(|(&march, i)| (march, i)).collect();
         let of_samples: Vec<u32> = own.iter().map(|march| number[march]).collect();
         drop((own, number));
-        let room = Room::of(self, samples, &marches, workers, count as f64 * layout.bytes())?;
+        let room = Room::of(self, samples, &marches, workers, count as f64 * format.bytes())?;
         let stopped = || progress.stop.load(Ordering::Relaxed);
         let order: Vec<u32> =
             distinct.values().flatten().copied().chain(lost.iter().map(|failure| failure.sample as u32)).collect();
         let mut results = Results {
-            layout,
-            numbers: memory::zeros("samples", count, count * layout.width())?,
-            instants: memory::zeros("samples", count, count * layout.instants())?,
+            format,
+            numbers: memory::zeros("samples", count, count * format.width())?,
+            instants: memory::zeros("samples", count, count * format.instants())?,
             marches: of_samples,
             digests: memory::zeros("samples", count, count)?,
             failures: Vec::new(),
@@ -86,12 +87,11 @@ impl Study {
             let (stop, mut failed) = (StopToken::when(&stopped), Vec::new());
             if let Some(shelf) = shelves.get(march) {
                 stop.check()?;
-                let shared = shelf.take(self, &layout);
-                let Shared { table, couplings } = &*shared;
-                let task = Task { study: self, layout, samples, kind: marches[march].0, table, couplings };
+                let shared = shelf.take(self, &format);
+                let task = Task { study: self, format, samples, kind: marches[march].0, shared: &shared };
                 let (records, failed) = (&mut records[..], &mut failed);
                 let part = Part { task, members, records, failed, stop };
-                if table.laid_out {
+                if shared.table.laid_out {
                     with(workers.isa, part)?
                 } else {
                     part.run::<f64>()?
@@ -100,7 +100,7 @@ impl Study {
             } else {
                 for (&member, record) in members.iter().zip(&mut records) {
                     let sample = member as usize;
-                    let mut cross = || single::cross(self, &layout, samples, sample, record, stop);
+                    let mut cross = || single::cross(self, &format, samples, sample, record, stop);
                     let beside = {
                         let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
                         cross()
@@ -150,8 +150,8 @@ impl Study {
             marches.iter().filter(|_| self.shares).map(|&march| Pace { path: self.path(march), halvings: march.1 });
         let places = self.look.marks.iter().map(|mark| mark.x).collect();
         let clock = Clock::new(self.settings.tail.seconds(), places, paces.collect());
-        let shelves = shelves.into_iter().filter(|_| !layout.own_statics);
-        let at_rest = shelves.map(|shelf| shelf.leaves(&layout)).collect();
+        let shelves = shelves.into_iter().filter(|_| !format.own_statics);
+        let at_rest = shelves.map(|shelf| shelf.leaves(&format)).collect();
         Ok(Run { results, marches, clock, at_rest })
     }
 }
@@ -160,20 +160,19 @@ impl Study {
     /// Whether no sample can do what is asked, though its vehicles are sound.
     fn ask_too_much(&self, samples: &Samples, failures: &[Failure]) -> bool {
         let refused = |f: &Failure| {
-            f.cause.is_input()
-                && single::vehicles(&self.kinds[samples.kind(f.sample)].passages, samples, f.sample).is_ok()
+            f.cause.is_input() && vehicles(&self.kinds[samples.kind(f.sample)].passages, samples, f.sample).is_ok()
         };
         !failures.is_empty() && failures.len() == samples.count && failures.iter().all(refused)
     }
 }
 
 /// Refuses more samples than can be numbered, or than there is memory for: a mistyped number is told at once.
-fn check_room(count: usize, layout: &Layout) -> Result<(), Error> {
+fn check_room(count: usize, format: &Format) -> Result<(), Error> {
     let mend = "use fewer";
     if u32::try_from(count).is_err() {
         return Err(Error::input("samples", count, format!("must be at most {}; {mend}", u32::MAX)));
     }
-    memory::check("samples", count, count as f64 * layout.bytes(), f64::INFINITY, "results", mend)
+    memory::check("samples", count, count as f64 * format.bytes(), f64::INFINITY, "results", mend)
 }
 
 /// What a run leaves.
@@ -201,7 +200,7 @@ struct Portion<'a> {
 /// The samples of each march in portions, with the rows that they fill, which follow each other in this order; the rows
 /// behind them are those of samples without a result.
 fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Results, chunk: usize) -> Vec<Portion<'a>> {
-    let (width, instants) = (results.layout.width(), results.layout.instants());
+    let (width, instants) = (results.format.width(), results.format.instants());
     let mut numbers = &mut results.numbers[..];
     let mut moments = &mut results.instants[..];
     let mut digests = &mut results.digests[..];
@@ -229,7 +228,7 @@ fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Result
 
 /// Puts rows that follow each other as in `order` in the order of the samples.
 fn put_back(order: &[u32], results: &mut Results) {
-    let (width, instants) = (results.layout.width(), results.layout.instants());
+    let (width, instants) = (results.format.width(), results.format.instants());
     let mut from: Vec<u32> = vec![0; order.len()];
     for (row, &sample) in order.iter().enumerate() {
         from[sample as usize] = row as u32;

@@ -7,23 +7,13 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::placing::Couplings;
-use super::results::Layout;
+use super::results::Format;
 use super::side_by_side;
 use super::study::{March, Study};
-use super::table::Table;
+use super::tabulated::Shared;
 
 /// To march so many samples one after the other is less work than to lay out the geometry for all.
 pub const FEW: usize = 2;
-
-/// What the samples of a march share.
-#[derive(Debug)]
-pub struct Shared {
-    /// The geometry.
-    pub table: Table,
-    /// What their steps have in common if they are alike, for whichever worker comes first to work out.
-    pub couplings: OnceLock<Couplings>,
-}
 
 /// The place of a march.
 #[derive(Debug)]
@@ -45,16 +35,16 @@ impl Shelf {
     }
 
     /// What its samples share, made now if nobody has.
-    pub fn take(&self, study: &Study, layout: &Layout) -> Arc<Shared> {
+    pub fn take(&self, study: &Study, format: &Format) -> Arc<Shared> {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(shared) = &*shared {
             return Arc::clone(shared);
         }
         let table = study.table(self.march, self.laid_out);
-        if !layout.own_statics {
+        if !format.own_statics {
             self.stays.get_or_init(|| side_by_side::at_rest(study, self.march.0, &table));
         }
-        Arc::clone(shared.insert(Arc::new(Shared { table, couplings: OnceLock::new() })))
+        Arc::clone(shared.insert(Arc::new(Shared::new(table))))
     }
 
     /// One portion is done.
@@ -65,7 +55,7 @@ impl Shelf {
     }
 
     /// Static extremes, largest of all responses and then smallest; not numbers where no sample came.
-    pub fn leaves(self, layout: &Layout) -> Vec<f64> {
-        self.stays.into_inner().unwrap_or_else(|| vec![f64::NAN; 2 * layout.responses])
+    pub fn leaves(self, format: &Format) -> Vec<f64> {
+        self.stays.into_inner().unwrap_or_else(|| vec![f64::NAN; 2 * format.responses])
     }
 }

@@ -1,14 +1,12 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
-use std::sync::OnceLock;
-
-use super::block::{Drawing, Ends, Found, Group, Growing, Scratch, Steppers, Trouble, Way, march, rest};
-use super::placing::{Couplings, Shared};
-use super::results::{Column, Failure, Layout, Record, encoded};
+use super::block::{Drawing, Ends, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest};
+use super::results::{Column, Failure, Format, Record, encoded};
 use super::sample::Samples;
-use super::single::{Scaled, passages};
 use super::study::{Kind, Study};
 use super::table::Table;
+use super::tabulated::{Couplings, Shared, Tabulated};
+use super::varied::{VariedBridge, passages};
 use crate::crossing::tail;
 use crate::damping::ModalDamping;
 use crate::error::Error;
@@ -27,9 +25,9 @@ use crate::tape::BridgeFactors;
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.
 pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
-    let way = Way { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely: false };
+    let scene = Scene { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely: false };
     let loads = study.vehicle(kind).static_loads(study.settings.gravity);
-    let seen = &rest::<f64>(&way, &loads);
+    let seen = &rest::<f64>(&scene, &loads);
     let row_of = &study.look.row_of;
     let side =
         |side: usize| row_of.iter().map(move |&row| seen.sides(row, 0, |instant| table.when(instant, 1.0))[side].0);
@@ -42,15 +40,13 @@ pub struct Task<'a> {
     /// The study.
     pub study: &'a Study,
     /// Where things go.
-    pub layout: Layout,
+    pub format: Format,
     /// All samples of the run.
     pub samples: &'a Samples,
     /// The kind of event.
     pub kind: usize,
-    /// Its geometry.
-    pub table: &'a Table,
-    /// What the samples' steps have in common if the samples are alike, for whichever worker comes first to work out.
-    pub couplings: &'a OnceLock<Couplings>,
+    /// Its geometry, and what its steps have in common.
+    pub shared: &'a Shared,
 }
 
 /// Some of these samples, with room for what comes of them.
@@ -77,7 +73,7 @@ impl InLanes for Part<'_, '_> {
 }
 
 /// What has been seen of a group.
-struct Marched<L> {
+struct Crossed<L> {
     found: Found<L>,
     /// Of the static responses, if they differ from sample to sample.
     at_rest: Option<Seen<L>>,
@@ -105,7 +101,7 @@ struct Ready {
 impl Task<'_> {
     fn cause(&self, sample: usize, step: usize, unsettled: Option<Unsettled>) -> Error {
         let time = step as f64 * self.step(sample);
-        let position = self.table.path.x(step.saturating_sub(1), 0);
+        let position = self.shared.table.path.x(step.saturating_sub(1), 0);
         match unsettled {
             Some(unsettled) => Error::NoConvergence { what: unsettled.name(), step, time, position },
             None => Error::NotFinite { step, time, position },
@@ -114,15 +110,15 @@ impl Task<'_> {
 
     /// Time of a step of a sample [s].
     fn step(&self, sample: usize) -> f64 {
-        self.table.path.advance / self.samples.speed(sample, 0)
+        self.shared.table.path.advance / self.samples.speed(sample, 0)
     }
 
     /// Most steps of a tail that is not given.
     fn most(&self, sample: usize, ready: &Ready) -> usize {
-        let (axles, modes) = (self.table.axles(), self.table.modes);
+        let (axles, modes) = (self.shared.table.axles(), self.shared.table.modes);
         let assembly = self.study.vehicle(self.kind).assembly();
         let bytes = bytes(modes, axles, assembly.mass.nrows() + 1, assembly.frictions.len());
-        let room = room(self.table.path.steps as f64, bytes);
+        let room = room(self.shared.table.path.steps as f64, bytes);
         most_steps(ready.slowest, self.step(sample), room)
     }
 
@@ -130,8 +126,8 @@ impl Task<'_> {
         let passages = passages(self.study, self.samples, sample)?;
         let vehicle = &passages[0].vehicle;
         let model = &self.study.analysis.model;
-        let scaled = Scaled::of(model, self.samples, sample);
-        let there = scaled.as_ref().map_or((&model.omega[..], &model.damping), |s| (&s.omega, &s.damping));
+        let varied = VariedBridge::of(model, self.samples, sample);
+        let there = varied.as_ref().map_or((&model.omega[..], &model.damping), |v| (&v.omega, &v.damping));
         let (assembly, propulsion) = (vehicle.assembly(), Propulsion::Prescribed);
         let moving = [Moving { assembly, propulsion, direction: 1.0, grade: 0.0 }];
         let Settings { beta, gravity, lift_off, .. } = self.study.settings;
@@ -140,7 +136,8 @@ impl Task<'_> {
         };
         let none = (&[][..], &ModalDamping::Classical(Vec::new()));
         let h = self.step(sample);
-        let (starter, approach) = (stepper(if self.table.first > 0 { none } else { there }, 0.0), stepper(none, h));
+        let (starter, approach) =
+            (stepper(if self.shared.table.first > 0 { none } else { there }, 0.0), stepper(none, h));
         let stepper = stepper(there, h);
         let slowest = there.0.iter().fold(f64::INFINITY, |least, w| w.powi(2).min(least));
         Ok(Ready {
@@ -150,8 +147,8 @@ impl Task<'_> {
             approach,
             stepper,
             static_loads: vehicle.static_loads(gravity),
-            bridge: scaled.as_ref().map(|s| BridgeFactors { coordinates: s.stiffness, rates: s.rates }),
-            stiffness: scaled.map_or(1.0, |s| s.stiffness),
+            bridge: varied.as_ref().map(VariedBridge::factors),
+            stiffness: varied.map_or(1.0, |varied| varied.stiffness),
         })
     }
 
@@ -255,10 +252,11 @@ impl Task<'_> {
         steppers: &mut Option<Steppers<L>>,
         (scratch, roads): (&mut Scratch<L>, &mut Vec<L>),
         stop: StopToken<'_>,
-    ) -> Result<Marched<L>, Trouble> {
-        let Task { study, table, samples, .. } = *self;
+    ) -> Result<Crossed<L>, Trouble> {
+        let Task { study, samples, .. } = *self;
+        let Shared { table, couplings } = self.shared;
         let kind: &Kind = &study.kinds[self.kind];
-        let way = Way { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely };
+        let scene = Scene { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely };
         let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
         let ready_of = |lane: usize| &ready[lane.min(ready.len() - 1)];
         let gather = |of: fn(&Ready) -> &Stepper<f64>| {
@@ -294,24 +292,24 @@ impl Task<'_> {
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
         let couplings = (samples.alike() && table.laid_out).then(|| {
             let work = || Couplings::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
-            self.couplings.get_or_init(work)
+            couplings.get_or_init(work)
         });
-        let geometry = Shared::new(table, roads, speed, couplings);
+        let geometry = Tabulated::new(table, roads, speed, couplings);
         let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
-        let found = march(&way, &mut group, steppers, scratch, stop)?;
-        let at_rest = self.layout.own_statics.then(|| {
+        let found = cross_group(&scene, &mut group, steppers, scratch, stop)?;
+        let at_rest = self.format.own_statics.then(|| {
             let of = |k: usize| L::from_fn(|lane| ready_of(lane).static_loads[k]);
             let loads: Vec<L> = (0..table.axles()).map(of).collect();
-            rest(&way, &loads)
+            rest(&scene, &loads)
         });
         let growth = L::dispatch(Growing { free: &study.free, found: &found });
-        Ok(Marched { found, at_rest, growth, last: group.ends.last })
+        Ok(Crossed { found, at_rest, growth, last: group.ends.last })
     }
 
     /// Writes down what was seen of a sample, and says whether all of it is finite.
     fn write<L: Lane>(
         &self,
-        group: &Marched<L>,
+        group: &Crossed<L>,
         lane: usize,
         ready: &[Ready],
         member: u32,
@@ -320,23 +318,23 @@ impl Task<'_> {
         let Ready { stiffness, static_loads, .. } = &ready[lane.min(ready.len() - 1)];
         self.write_numbers(group, lane, member as usize, (*stiffness, static_loads), record);
         let bodies = self.study.kinds[self.kind].bodies.len();
-        self.layout.is_finite(record.numbers, self.table.axles(), bodies)
+        self.format.is_finite(record.numbers, self.shared.table.axles(), bodies)
     }
 
     fn write_numbers<L: Lane>(
         &self,
-        Marched { found, at_rest, growth, last }: &Marched<L>,
+        Crossed { found, at_rest, growth, last }: &Crossed<L>,
         lane: usize,
         sample: usize,
         (stiffness, static_loads): (f64, &[f64]),
         record: &mut Record<'_>,
     ) {
-        let (layout, look) = (&self.layout, &self.study.look);
-        let responses = layout.responses;
+        let (format, look) = (&self.format, &self.study.look);
+        let responses = format.responses;
         record.forget();
         let h = self.step(sample);
-        let when = |instant| self.table.when(instant, h);
-        let start = layout.range(Column::Responses).start;
+        let when = |instant| self.shared.table.when(instant, h);
+        let start = format.range(Column::Responses).start;
         for (place, (&row, &deflection)) in look.row_of.iter().zip(&look.deflections).enumerate() {
             let k = if deflection { stiffness } else { 1.0 };
             for (side, (value, instant)) in found.seen.sides(row, lane, when).into_iter().enumerate() {
@@ -344,23 +342,23 @@ impl Task<'_> {
                 record.instants[side * responses + place] = encoded(instant);
             }
             if let Some(at_rest) = at_rest {
-                let start = layout.range(Column::Statics).start;
+                let start = format.range(Column::Statics).start;
                 for (side, (value, _)) in at_rest.sides(row, lane, when).into_iter().enumerate() {
                     record.numbers[start + side * responses + place] = value / k;
                 }
             }
         }
-        let start = layout.range(Column::Tail).start;
+        let start = format.range(Column::Tail).start;
         let tail = match self.study.settings.tail {
             Tail::Fixed(tail) => tail,
-            Tail::Free => (last.get(lane) - self.table.path.steps as f64) * h,
+            Tail::Free => (last.get(lane) - self.shared.table.path.steps as f64) * h,
         };
         let [growth, side] = growth.map(|each| each.get(lane));
         record.numbers[start..start + 3].copy_from_slice(&[tail, growth, look.side(side)]);
-        record.write_ride(layout, &found.ride, lane, [0, 0], static_loads, h);
+        record.write_ride(format, &found.ride, lane, [0, 0], static_loads, h);
         for (k, watched) in found.ride.loads.iter().enumerate() {
             for (side, at) in [watched.max_at, watched.min_at].into_iter().enumerate() {
-                record.instants[2 * responses + side * layout.axles + k] = at.get(lane) as u32;
+                record.instants[2 * responses + side * format.axles + k] = at.get(lane) as u32;
             }
         }
     }

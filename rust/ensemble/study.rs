@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::results::{Failure, Layout};
+use super::results::{Failure, Format};
 use super::sample::{Parameter, Samples};
 use super::table::{Advance, StudyRoad, Table};
 use crate::crossing::analysis::Analysis;
@@ -202,12 +202,12 @@ impl Study {
     }
 
     /// Where things stand in the rows of a run's results.
-    pub fn layout(&self, samples: &Samples) -> Layout {
+    pub fn format(&self, samples: &Samples) -> Format {
         let most = |count: &dyn Fn(&Vehicle) -> usize| {
             let of = self.kinds.iter().map(|k| k.passages.iter().map(|p| count(&p.vehicle)).sum());
             of.max().unwrap_or(0)
         };
-        Layout {
+        Format {
             responses: self.look.chosen.len(),
             axles: most(&|v| v.assembly().contacts.len()),
             bodies: most(&|v| v.bodies().len()),

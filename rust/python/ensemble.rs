@@ -16,9 +16,10 @@ use super::road::PyRoad;
 use super::vehicle::{PyBody, PyVehicle, parts_of};
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
 use crate::crossing::analysis::Analysis;
-use crate::ensemble::results::{Column, Failure, Layout, fingerprint as fingerprint_of};
+use crate::ensemble::results::{Column, Failure, Format, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
-use crate::ensemble::{Plan, Run, Workers, clock, single};
+use crate::ensemble::varied::vehicles as varied_vehicles;
+use crate::ensemble::{Plan, Run, Workers, clock};
 use crate::error::Error;
 use crate::memory;
 use crate::passage::Passage;
@@ -43,7 +44,7 @@ pub struct Ensemble {
     shares: bool,
     quantities: Vec<Quantity>,
     workers: Workers,
-    layout: Layout,
+    format: Format,
     hash: u64,
     elapsed: f64,
     failures: Vec<Failure>,
@@ -137,10 +138,10 @@ impl Ensemble {
             ("positions", Column::Positions),
         ];
         let place = |(name, column): (&'static str, Column)| {
-            let range = self.layout.range(column);
+            let range = self.format.range(column);
             (name, (range.start, range.end))
         };
-        let tail = self.layout.range(Column::Tail).start;
+        let tail = self.format.range(Column::Tail).start;
         let single = ["tail", "growth", "growing"].into_iter().zip(tail..).map(|(name, at)| (name, (at, at + 1)));
         all.into_iter().map(place).chain(single).collect()
     }
@@ -263,7 +264,7 @@ pub fn varied<'py>(
         let bodies = vehicle.bodies().iter().map(parts_of).collect();
         (PyVehicle(vehicle), bodies)
     };
-    let vehicles = preparing(py, coordinates(&event), move |_| single::vehicles(&event, &samples, 0))?;
+    let vehicles = preparing(py, coordinates(&event), move |_| varied_vehicles(&event, &samples, 0))?;
     Ok(vehicles.into_iter().map(with_bodies).collect())
 }
 
@@ -309,7 +310,7 @@ pub fn static_loads<'py>(
             let kind = samples.kind(sample);
             match samples.varies_loads() {
                 // A sample whose vehicle cannot be has no results either.
-                true => match single::vehicles(&kinds[kind], &samples, sample) {
+                true => match varied_vehicles(&kinds[kind], &samples, sample) {
                     Ok(vehicles) => all.extend(loads(&vehicles)),
                     Err(_) => all.resize(all.len() + axles, f64::NAN),
                 },
@@ -410,15 +411,15 @@ pub fn ensemble<'py>(
     })?;
     let elapsed = started.elapsed().as_secs_f64();
     let Run { results, clock, at_rest, .. } = run;
-    let (hash, layout) = (results.hash(), results.layout);
-    let numbers = results.numbers.into_pyarray(py).reshape([count, layout.width()])?;
-    let instants = results.instants.into_pyarray(py).reshape([count, layout.instants()])?;
+    let (hash, format) = (results.hash(), results.format);
+    let numbers = results.numbers.into_pyarray(py).reshape([count, format.width()])?;
+    let instants = results.instants.into_pyarray(py).reshape([count, format.instants()])?;
     Ok(Ensemble {
         analysis,
         shares,
         quantities,
         workers,
-        layout,
+        format,
         hash,
         elapsed,
         failures: results.failures,
@@ -426,7 +427,7 @@ pub fn ensemble<'py>(
         instants: instants.unbind(),
         digests: results.digests.into_pyarray(py).unbind(),
         marches: results.marches.into_pyarray(py).unbind(),
-        at_rest: rows(py, at_rest.concat(), 2 * layout.responses)?.unbind(),
+        at_rest: rows(py, at_rest.concat(), 2 * format.responses)?.unbind(),
         clock: Py::new(py, Clock(clock))?,
     })
 }

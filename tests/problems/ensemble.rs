@@ -3,7 +3,7 @@
 
 use spanwise::stop_token::StopToken;
 use spanwise::tape::BridgeFactors;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use spanwise::bridge::Bridge;
 use spanwise::crossing::analysis::{Analysis, Preparation};
@@ -15,6 +15,7 @@ use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::results::{Column, Record, Results};
 use spanwise::ensemble::sample::{Factors, Parameter, Samples};
 use spanwise::ensemble::side_by_side::Task;
+use spanwise::ensemble::tabulated::Shared;
 use spanwise::ensemble::{Plan, Progress, Run, Study, Workers};
 use spanwise::error::Error;
 use spanwise::lane::Lanes;
@@ -195,13 +196,13 @@ pub fn some(samples: &Samples, places: std::ops::Range<usize>) -> Samples {
 
 /// The numbers and instants of a sample.
 pub fn row(results: &Results, sample: usize) -> (&[f64], &[u32]) {
-    let (width, instants) = (results.layout.width(), results.layout.instants());
+    let (width, instants) = (results.format.width(), results.format.instants());
     (&results.numbers[sample * width..][..width], &results.instants[sample * instants..][..instants])
 }
 
 /// A column of a sample.
 pub fn column(results: &Results, sample: usize, column: Column) -> &[f64] {
-    &row(results, sample).0[results.layout.range(column)]
+    &row(results, sample).0[results.format.range(column)]
 }
 
 /// Static loads worked out twice, relative to the largest response.
@@ -261,7 +262,7 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
 /// Every sample against its own single crossing, to the bit: extremes of responses and axle loads, when and where, and
 /// static extremes.
 pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
-    let (results, layout) = (&run.results, run.results.layout);
+    let (results, format) = (&run.results, run.results.format);
     assert!(results.failures.is_empty(), "{name}: {:?}", results.failures);
     for sample in 0..samples.count {
         let march = results.marches[sample] as usize;
@@ -281,7 +282,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         let hands = run.clock.of(number);
         let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
         let values = column(results, sample, Column::Responses);
-        let shared = layout.own_statics.then(|| column(results, sample, Column::Statics));
+        let shared = format.own_statics.then(|| column(results, sample, Column::Statics));
         let statics = match shared {
             None => Some(&run.at_rest[march][..]),
             own => own,
@@ -294,7 +295,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
                     .into_iter()
                     .enumerate()
             {
-                let at = side * layout.responses + place;
+                let at = side * format.responses + place;
                 let (time, position) = hands.when(speed, instants[at]);
                 // Cut short, the last step is rounded before or after the factors of the bridge.
                 let cut = alone.stiffness != 1.0 && study.settings.tail.seconds() > Some(0.0);
@@ -336,9 +337,9 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         for k in 0..alone.history.axles {
             let sides = [alone.axle_loads.dynamic.max[k], alone.axle_loads.dynamic.min[k]];
             for (side, extreme) in sides.into_iter().enumerate() {
-                let at = side * layout.axles + k;
+                let at = side * format.axles + k;
                 same("load of axle", k, loads[at], extreme.value);
-                let (time, position) = hands.when(speed, instants[2 * layout.responses + at]);
+                let (time, position) = hands.when(speed, instants[2 * format.responses + at]);
                 same("time of load", k, time, extreme.time);
                 same("place of load", k, position, extreme.position);
             }
@@ -349,11 +350,11 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
 /// One sample in a lane of any kind, its geometry laid out or not, on the calling thread: its numbers and instants.
 pub fn one<L: Lanes>(study: &Study, number: u64, laid_out: bool) -> (Vec<f64>, Vec<u32>) {
     let samples = Samples::at_speed(number, 1, SPEED);
-    let (layout, table) = (study.layout(&samples), study.table((0, 0), laid_out));
-    let (mut numbers, mut instants) = (vec![0.0; layout.width()], vec![0; layout.instants()]);
+    let (format, table) = (study.format(&samples), study.table((0, 0), laid_out));
+    let (mut numbers, mut instants) = (vec![0.0; format.width()], vec![0; format.instants()]);
     let record = Record { numbers: &mut numbers, instants: &mut instants };
-    let (samples, table, couplings) = (&samples, &table, &OnceLock::new());
-    let task = Task { study, layout, samples, kind: 0, table, couplings };
+    let (samples, shared) = (&samples, &Shared::new(table));
+    let task = Task { study, format, samples, kind: 0, shared };
     task.run::<L>(&[0], &mut [record], &mut Vec::new(), StopToken::NEVER).unwrap();
     (numbers, instants)
 }

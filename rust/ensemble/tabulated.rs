@@ -1,6 +1,8 @@
 //! Where the axles of samples that share the geometry are, and what lies under them: the table, with the roads and speeds
 //! of a group of lanes.
 
+use std::sync::OnceLock;
+
 use super::table::{Below, Table};
 use crate::geometry::{Geometry, Surface};
 use crate::lane::Lane;
@@ -24,7 +26,7 @@ impl Couplings {
     /// Of samples with this speed [m/s], as their step works it out; none if that is too much.
     pub fn new(table: &Table, stepper: &mut Stepper<f64>, speed: f64) -> Self {
         let road = [0.0];
-        let mut geometry = Shared::new(table, &road, speed, None);
+        let mut geometry = Tabulated::new(table, &road, speed, None);
         let mut couplings = Couplings::default();
         for row in table.first..=table.last() {
             geometry.row = row;
@@ -40,9 +42,25 @@ impl Couplings {
     }
 }
 
+/// What the samples of a march share.
+#[derive(Debug)]
+pub struct Shared {
+    /// The geometry.
+    pub table: Table,
+    /// What their steps have in common if they are alike, for whichever worker comes first to work out.
+    pub couplings: OnceLock<Couplings>,
+}
+
+impl Shared {
+    /// With nothing worked out yet.
+    pub fn new(table: Table) -> Self {
+        Shared { table, couplings: OnceLock::new() }
+    }
+}
+
 /// The shared table, with the roads and speeds of a group of samples.
 #[derive(Debug, Clone)]
-pub struct Shared<'a, L> {
+pub struct Tabulated<'a, L> {
     table: &'a Table,
     /// Coefficients of the samples' own roads.
     road: &'a [L],
@@ -56,14 +74,14 @@ pub struct Shared<'a, L> {
     surfaces: Vec<Surface<L>>,
 }
 
-impl<'a, L: Lane> Shared<'a, L> {
+impl<'a, L: Lane> Tabulated<'a, L> {
     /// At the start.
     #[inline(always)]
     pub fn new(table: &'a Table, road: &'a [L], speed: L, couplings: Option<&'a Couplings>) -> Self {
         let zero = L::splat(0.0);
         let level = Surface { elevation: zero, slope: zero, curvature: zero };
         let surfaces = vec![level; table.axles()];
-        let mut shared = Shared { table, road, speed, couplings, step: 0, row: 0, surfaces };
+        let mut shared = Tabulated { table, road, speed, couplings, step: 0, row: 0, surfaces };
         shared.look_down();
         shared
     }
@@ -103,7 +121,7 @@ impl<'a, L: Lane> Shared<'a, L> {
     }
 }
 
-impl<L: Lane> Geometry<L> for Shared<'_, L> {
+impl<L: Lane> Geometry<L> for Tabulated<'_, L> {
     #[inline(always)]
     fn advance(&mut self) {
         self.step += 1;
