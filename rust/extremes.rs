@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::lane::Lane;
-use crate::recovery::{Place, Placed, Responding, Rows, WIDTH};
+use crate::recovery::{Placed, Responding, Rows, WIDTH};
 use crate::selection::Selection;
 use crate::stops::{PassingInfluence, Stop};
-use crate::tape::{Tape, Widths};
+use crate::tape::Widths;
 
 /// Largest and smallest so far, and when: the number of a step or of a stop; of one value in samples side by side, or of
 /// responses side by side.
@@ -186,71 +186,85 @@ pub fn at_stop<L: Lane>(
     }
 }
 
-/// Looks for the extremes of every row at the steps of a tape of one sample; `places` are those of its axles, by step and
-/// axle, none where there is no axle on the bridge.
+/// Steps of one sample in which every response is evaluated, response beside response, in one state or several, as
+/// dynamic and at rest.
 ///
 /// To bound responses chunk by chunk, as [`crate::ensemble::bounds`] does, pays where many samples share the influence of
-/// their loads. For a few it is less work to evaluate every response at every step, response beside response, from the
-/// same numbers in the same order: the extremes are the same bits.
-pub fn at_steps<L: Lane>(watched: &mut [Peaks<L>], rows: &Rows, look: &Selection, tape: &Tape<L>, places: &[Place]) {
-    let (c, axles) = (tape.widths.coordinates, if places.is_empty() { 0 } else { tape.widths.axles });
-    let mut steps = Steps {
-        rows,
-        from: tape.from,
-        axles,
-        coordinates: Vec::with_capacity(c * tape.steps),
-        placed: Vec::with_capacity(axles * tape.steps),
-        blocks: Vec::new(),
-    };
-    for (i, kept) in tape.taken().enumerate() {
-        steps.coordinates.extend(kept[..c].iter().map(|a| a.get(0)));
-        let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
-        steps.placed.extend(here.map(|(&place, load)| Placed::new(place, load.get(0))));
+/// their loads. For a few it is less work to evaluate all, from the same numbers in the same order: the extremes are the
+/// same bits.
+#[derive(Debug, Clone, Default)]
+pub struct Steps<const STATES: usize> {
+    /// Number of the first.
+    pub from: usize,
+    /// Axles that may be on the bridge.
+    pub axles: usize,
+    /// What the rows multiply, step after step, state after state.
+    pub coordinates: Vec<f64>,
+    /// The axles, step after step.
+    pub placed: Vec<Placed<STATES>>,
+}
+
+impl<const STATES: usize> Steps<STATES> {
+    /// Begins anew with a step of this number.
+    pub fn begin(&mut self, from: usize, axles: usize) {
+        (self.from, self.axles) = (from, axles);
+        self.coordinates.clear();
+        self.placed.clear();
     }
-    // Rows are in the order of their responses, so that those of one block follow each other.
-    let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
-    let mut all = watched.iter();
-    for rows in of_blocks() {
-        let mut seen = [Peaks::<f64>::nothing(); WIDTH];
-        for (row, own) in rows.iter().zip(&mut all) {
-            seen[row.response % WIDTH] = own.one(0);
+
+    /// Takes the extremes of every row in these steps in, state by state.
+    pub fn look<L: Lane>(&self, rows: &Rows, look: &Selection, seen: [&mut [Peaks<L>]; STATES]) {
+        // Rows are in the order of their responses, so that those of one block follow each other.
+        let of_blocks = || look.rows.chunk_by(|a, b| a.response / WIDTH == b.response / WIDTH);
+        let blocks = of_blocks().map(|of_block| (of_block[0].response / WIDTH, [Peaks::nothing(); STATES]));
+        let mut looking = Looking { rows, steps: self, blocks: blocks.collect() };
+        for (state, seen) in seen.iter().enumerate() {
+            let mut all = seen.iter();
+            for (of_block, (_, blocks)) in of_blocks().zip(&mut looking.blocks) {
+                let mut before = [Peaks::<f64>::nothing(); WIDTH];
+                for (row, own) in of_block.iter().zip(&mut all) {
+                    before[row.response % WIDTH] = own.one(0);
+                }
+                blocks[state] = Peaks::beside(&before);
+            }
         }
-        steps.blocks.push((rows[0].response / WIDTH, Peaks::beside(&seen)));
-    }
-    // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
-    pulp::Arch::new().dispatch(&mut steps);
-    let mut all = watched.iter_mut();
-    for (rows, (_, seen)) in of_blocks().zip(&steps.blocks) {
-        for (row, own) in rows.iter().zip(&mut all) {
-            *own = Peaks::beside(&[seen.one(row.response % WIDTH)]);
+        // The widest instruction set that the processor has; none of them changes a bit, because nothing is fused.
+        pulp::Arch::new().dispatch(&mut looking);
+        for (state, seen) in seen.into_iter().enumerate() {
+            let mut all = seen.iter_mut();
+            for (of_block, (_, blocks)) in of_blocks().zip(&looking.blocks) {
+                for (row, own) in of_block.iter().zip(&mut all) {
+                    *own = Peaks::beside(&[blocks[state].one(row.response % WIDTH)]);
+                }
+            }
         }
     }
 }
 
-/// Steps of one sample made ready, and the extremes of each block in them and before.
-struct Steps<'s> {
+/// Such steps being looked at: each block of responses with its extremes so far.
+struct Looking<'s, const STATES: usize> {
     rows: &'s Rows,
-    from: usize,
-    /// Those that may be on the bridge.
-    axles: usize,
-    coordinates: Vec<f64>,
-    placed: Vec<Placed>,
-    blocks: Vec<(usize, Peaks<Responding>)>,
+    steps: &'s Steps<STATES>,
+    blocks: Vec<(usize, [Peaks<Responding>; STATES])>,
 }
 
-impl pulp::WithSimd for &mut Steps<'_> {
+impl<const STATES: usize> pulp::WithSimd for &mut Looking<'_, STATES> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let (width, axles) = (self.rows.width(), self.axles);
-        for (b, seen) in &mut self.blocks {
+        let Looking { rows, steps: Steps { from, axles, coordinates, placed }, blocks } = self;
+        let width = rows.width();
+        for (b, seen) in blocks {
             // From memory to registers and back as a whole: the compiler takes numbers side by side only so.
             let mut own = *seen;
-            let mut number = self.from as f64;
-            for (i, coordinates) in self.coordinates.chunks_exact(width).enumerate() {
-                let values = self.rows.block(*b, coordinates, &self.placed[i * axles..][..axles]);
-                own.take(Responding::from(values), Responding::splat(number));
+            let mut number = *from as f64;
+            for (i, coordinates) in coordinates.chunks_exact(width * STATES).enumerate() {
+                let states = std::array::from_fn(|state| &coordinates[state * width..][..width]);
+                let values = rows.block(*b, states, &placed[i * axles..][..*axles]);
+                for (own, values) in own.iter_mut().zip(values) {
+                    own.take(Responding::from(values), Responding::splat(number));
+                }
                 number += 1.0;
             }
             *seen = own;

@@ -37,21 +37,21 @@ pub type Block = [f64; WIDTH];
 /// The same as lanes, responses side by side.
 pub type Responding = Wide<WIDTH>;
 
-/// An axle on the bridge or, without a load, off it.
+/// An axle on the bridge or, without a load, off it, in several states: with its load in each.
 #[derive(Debug, Clone, Copy)]
-pub struct Placed {
+pub struct Placed<const STATES: usize> {
     panel: usize,
     fraction: f64,
-    load: f64,
+    loads: [f64; STATES],
 }
 
-impl Placed {
-    /// An axle at a place with its load [N].
+impl<const STATES: usize> Placed<STATES> {
+    /// An axle at a place with its loads [N].
     #[inline(always)]
-    pub fn new(place: Place, load: f64) -> Self {
+    pub fn new(place: Place, loads: [f64; STATES]) -> Self {
         match place {
-            Some((panel, fraction)) => Placed { panel, fraction, load },
-            None => Placed { panel: 0, fraction: 0.0, load: 0.0 },
+            Some((panel, fraction)) => Placed { panel, fraction, loads },
+            None => Placed { panel: 0, fraction: 0.0, loads: [0.0; STATES] },
         }
     }
 }
@@ -233,21 +233,30 @@ impl Rows {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
     }
 
-    /// One block of responses to coordinates and to loads at their places.
+    /// One block of responses to the coordinates and the loads of each state.
     // Always inlined, so that it is compiled for the instruction set of the loop around it.
     #[inline(always)]
-    pub fn block(&self, b: usize, coordinates: &[f64], axles: &[Placed]) -> Block {
-        let mut values = [0.0; WIDTH];
-        for (factor, a) in self.factors[b * self.width..(b + 1) * self.width].iter().zip(coordinates) {
-            for i in 0..WIDTH {
-                values[i] += factor[i] * a;
+    pub fn block<const STATES: usize>(
+        &self,
+        b: usize,
+        coordinates: [&[f64]; STATES],
+        axles: &[Placed<STATES>],
+    ) -> [Block; STATES] {
+        let mut values = [[0.0; WIDTH]; STATES];
+        for (c, factor) in self.factors[b * self.width..(b + 1) * self.width].iter().enumerate() {
+            for (values, coordinates) in values.iter_mut().zip(coordinates) {
+                for i in 0..WIDTH {
+                    values[i] += factor[i] * coordinates[c];
+                }
             }
         }
-        for axle in axles {
-            let [c0, c1, c2, c3] = &self.lines[axle.panel * self.blocks() + b];
-            let f = axle.fraction;
+        for Placed { panel, fraction, loads } in axles {
+            let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + b];
             for i in 0..WIDTH {
-                values[i] += value([c0[i], c1[i], c2[i], c3[i]], f) * axle.load;
+                let g = value([c0[i], c1[i], c2[i], c3[i]], *fraction);
+                for (values, load) in values.iter_mut().zip(loads) {
+                    values[i] += g * load;
+                }
             }
         }
         values

@@ -5,6 +5,7 @@ use std::ops::{Range, RangeInclusive};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::extremes::interpolate;
 use crate::geometry::Geometry;
 use crate::recovery::{Place, Placed, Rows, WIDTH};
 use crate::statistics::Ride;
@@ -12,7 +13,7 @@ use crate::step::newmark::Coordinate;
 use crate::step::stepper::State;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
-use crate::stops::Positions;
+use crate::stops::{Positions, Stop};
 use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
 use crate::vehicle::equations::{Assembly, Sprung};
 
@@ -154,12 +155,31 @@ impl History {
         first..=(first..self.len()).rev().find(on).unwrap_or(first)
     }
 
-    /// Writes down what recovery needs of a step, on a bridge that may be varied by `factors`; bodies apart.
+    /// Writes down what the rows multiply at a step, on a bridge that may be varied by `factors`.
     pub fn write(&self, step: usize, widths: &Widths, factors: Option<&BridgeFactors<f64>>, row: &mut [f64]) {
         let of = |all: &[f64], m: usize| all[step * self.modes + m];
         let mode = |m: usize| Coordinate { x: of(&self.a, m), v: of(&self.a_dot, m), a: of(&self.a_ddot, m) };
         widths.write_modes(row, self.modes, mode, factors);
-        row[widths.loads()..][..self.axles].copy_from_slice(&self.loads[step * self.axles..][..self.axles]);
+        if widths.felt {
+            row[widths.coordinates..].copy_from_slice(&self.loads[step * self.axles..][..self.axles]);
+        }
+    }
+
+    /// The same at a stop; `sides` is room for the steps before and after it.
+    pub fn write_at(
+        &self,
+        stop: &Stop,
+        widths: &Widths,
+        factors: Option<&BridgeFactors<f64>>,
+        sides: &mut [Vec<f64>; 2],
+        row: &mut Vec<f64>,
+    ) {
+        for (side, step) in sides.iter_mut().zip([stop.step - 1, stop.step]) {
+            side.resize(widths.used(), 0.0);
+            self.write(step, widths, factors, side);
+        }
+        let [before, after] = sides;
+        interpolate(stop, [before, after], widths, row);
     }
 
     /// The responses of a range of `rows` at every instant, dynamic and static, row by row.
@@ -328,7 +348,7 @@ impl pulp::WithSimd for &mut Filling<'_> {
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let Filling { history, rows, range, steps, out } = self;
         let widths = Widths::of(rows, history.axles, 0);
-        let (c, mut row) = (widths.coordinates, vec![0.0; widths.all()]);
+        let (c, mut row) = (widths.coordinates, vec![0.0; widths.used()]);
         let (mut places, mut of_one, mut at_rest) = (Vec::new(), Vec::new(), vec![0.0; widths.used()]);
         for step in steps.clone() {
             history.write(step, &widths, None, &mut row);
@@ -336,13 +356,14 @@ impl pulp::WithSimd for &mut Filling<'_> {
             of_one.clear();
             places.iter().for_each(|place| rows.extend_static(*place, &mut of_one));
             write_at_rest(&of_one, &history.static_loads, &mut at_rest);
-            for (row, out) in [&row, &at_rest].into_iter().zip(&mut *out) {
-                let placed: Vec<Placed> =
-                    places.iter().zip(&row[c..]).map(|(p, load)| Placed::new(*p, *load)).collect();
-                for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
-                    let first = b * WIDTH;
-                    let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;
-                    out.extend_from_slice(&rows.block(b, &row[..c], &placed)[wanted]);
+            let loads = row[c..].iter().zip(&at_rest[c..]);
+            let placed: Vec<_> = places.iter().zip(loads).map(|(p, (d, s))| Placed::new(*p, [*d, *s])).collect();
+            for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
+                let first = b * WIDTH;
+                let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;
+                let values = rows.block(b, [&row[..c], &at_rest[..c]], &placed);
+                for (out, values) in out.iter_mut().zip(values) {
+                    out.extend_from_slice(&values[wanted.clone()]);
                 }
             }
         }

@@ -4,13 +4,13 @@ use crate::crossing::envelope::{Envelope, Extreme, Extremes};
 use crate::crossing::history::{History, TOGETHER};
 use crate::crossing::tail::{FreeRows, Watch};
 use crate::error::Error;
-use crate::extremes::{Instant, Seen, at_steps, at_stop, interpolate, value};
-use crate::recovery::{Place, Rows};
+use crate::extremes::{Instant, Seen, Steps, at_stop, value};
+use crate::recovery::{Place, Placed, Rows};
 use crate::selection::Selection;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
 use crate::stops::{Follower, PassingInfluence, Positions, Stop};
-use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
+use crate::tape::{BridgeFactors, Widths, write_at_rest};
 
 /// Extremes of the responses looked at, while a history grows.
 pub struct Observer<'a> {
@@ -31,14 +31,17 @@ pub struct Observer<'a> {
     desk: Desk,
 }
 
-/// Room to work in, for steps dynamic and at rest, and for one instant.
+/// Room to work in.
 #[derive(Default)]
 struct Desk {
-    dynamic: Tape<f64>,
-    at_rest: Tape<f64>,
+    /// Steps, dynamic and at rest.
+    steps: Steps<2>,
+    /// Where axles are at an instant, and what static loads of one make of the coordinates.
     places: Vec<Place>,
     of_one: Vec<f64>,
     moment: PassingInfluence,
+    /// What the rows multiply before and after a stop, and at an instant, dynamic and at rest.
+    sides: [Vec<f64>; 2],
     then: Vec<f64>,
     then_at_rest: Vec<f64>,
     influence: Vec<f64>,
@@ -70,49 +73,45 @@ impl<'a> Observer<'a> {
             let from = self.steps;
             self.steps = (from + TOGETHER).min(history.len());
             self.write(history, from);
-            let Desk { dynamic, at_rest, places, .. } = &self.desk;
-            at_steps(&mut self.dynamic.steps, self.rows, self.look, dynamic, places);
-            at_steps(&mut self.at_rest.steps, self.rows, self.look, at_rest, places);
+            let seen = [&mut self.dynamic.steps[..], &mut self.at_rest.steps[..]];
+            self.desk.steps.look(self.rows, self.look, seen);
             self.pass(history, from);
             stop.check()?;
         }
         Ok(())
     }
 
-    /// What a step leaves for recovery, dynamic and at rest.
-    fn widths(&self, axles: usize) -> [Widths; 2] {
-        [self.rows.weight() == 1.0, true].map(|felt| Widths { felt, ..Widths::of(self.rows, axles, 0) })
+    /// What a step leaves for recovery.
+    fn widths(&self, history: &History) -> Widths {
+        Widths::of(self.rows, history.axles, 0)
     }
 
-    /// Writes down the steps from one on, and the one before.
+    /// Makes the steps from one on ready.
     fn write(&mut self, history: &History, from: usize) {
-        let [widths, widths_at_rest] = self.widths(history.axles);
-        let (rows, factors, to) = (self.rows, self.factors.as_ref(), self.steps);
-        let Desk { dynamic, at_rest, places, of_one, .. } = &mut self.desk;
-        dynamic.begin(widths, from, (to - from).div_ceil(CHUNK));
-        at_rest.begin(widths_at_rest, from, (to - from).div_ceil(CHUNK));
-        places.clear();
-        if from > 0 {
-            history.write(from - 1, &widths, factors, dynamic.row_mut(from)[0]);
-        }
+        let (widths, rows, factors, to) = (self.widths(history), self.rows, self.factors.as_ref(), self.steps);
+        let Desk { steps, places, of_one, then, then_at_rest, .. } = &mut self.desk;
+        steps.begin(from, history.axles);
+        then.resize(widths.used(), 0.0);
+        then_at_rest.resize(widths.used(), 0.0);
         for step in from..to {
-            let [_, row] = dynamic.row_mut(step);
-            history.write(step, &widths, factors, row);
-            let first = places.len();
-            places.extend((0..history.axles).map(|axle| rows.place(history.x(step, axle))));
+            history.write(step, &widths, factors, then);
+            history.places(step, rows, places);
             of_one.clear();
-            places[first..].iter().for_each(|place| rows.extend_static(*place, of_one));
-            let [_, row] = at_rest.row_mut(step);
-            write_at_rest(of_one, &history.static_loads, row);
+            places.iter().for_each(|place| rows.extend_static(*place, of_one));
+            write_at_rest(of_one, &history.static_loads, then_at_rest);
+            let (coordinates, loads) = then.split_at(widths.coordinates);
+            let (coordinates_at_rest, loads_at_rest) = then_at_rest.split_at(widths.coordinates);
+            steps.coordinates.extend(coordinates.iter().chain(coordinates_at_rest));
+            let loads = loads.iter().zip(loads_at_rest);
+            steps.placed.extend(places.iter().zip(loads).map(|(place, (d, s))| Placed::new(*place, [*d, *s])));
         }
-        dynamic.take_all(to - from);
-        at_rest.take_all(to - from);
     }
 
     /// Takes in every stop from a step on.
     fn pass(&mut self, history: &History, from: usize) {
-        let Observer { rows, look, follower, stops, desk, .. } = self;
-        let Desk { dynamic, moment, then, then_at_rest, .. } = desk;
+        let widths = self.widths(history);
+        let Observer { rows, look, factors, follower, stops, desk, .. } = self;
+        let Desk { moment, sides, then, then_at_rest, .. } = desk;
         let follower = follower.get_or_insert_with(|| {
             let to_the_right = (0..history.axles).map(|axle| history.direction(axle) > 0.0).collect();
             Follower::new(history, to_the_right, &look.marks)
@@ -121,10 +120,9 @@ impl<'a> Observer<'a> {
         for step in from.max(1)..self.steps {
             follower.stops(history, step, look, stops);
         }
-        then_at_rest.resize(dynamic.widths.used(), 0.0);
         for (number, stop) in stops.iter().enumerate().skip(first) {
             moment.fill(stop, history, rows, look);
-            interpolate(stop, [dynamic.row(stop.step - 1), dynamic.row(stop.step)], &dynamic.widths, then);
+            history.write_at(stop, &widths, factors.as_ref(), sides, then);
             at_stop(&mut self.dynamic.stops, look, (stop, number, moment), then);
             write_at_rest(&moment.statics, &history.static_loads, then_at_rest);
             at_stop(&mut self.at_rest.stops, look, (stop, number, moment), then_at_rest);
@@ -166,37 +164,29 @@ impl<'a> Observer<'a> {
 
     /// The static response at an extreme of the dynamic one, the first of them, or the other way round.
     fn partner(&mut self, history: &History, row: usize, of: usize, (extreme, instant): (f64, Instant)) -> f64 {
-        let [widths, _] = self.widths(history.axles);
+        let widths = self.widths(history);
         let Observer { rows, look, stops, desk, factors, .. } = self;
-        let Desk { places, of_one, then, then_at_rest, influence, .. } = desk;
+        let Desk { places, of_one, sides, then, then_at_rest, influence, .. } = desk;
         let stop = match instant {
             Instant::Step(step) => {
-                then.resize(widths.all(), 0.0);
                 history.write(step, &widths, factors.as_ref(), then);
                 history.places(step, rows, places);
                 None
             }
             Instant::Stop(number) => {
                 let stop = &stops[number];
-                let mut sides = [stop.step - 1, stop.step].map(|step| {
-                    let mut row = vec![0.0; widths.all()];
-                    history.write(step, &widths, factors.as_ref(), &mut row);
-                    row
-                });
-                let [before, after] = &mut sides;
-                interpolate(stop, [before, after], &widths, then);
+                history.write_at(stop, &widths, factors.as_ref(), sides, then);
                 stop.places(history, rows, places);
                 Some(stop)
             }
         };
         of_one.clear();
         places.iter().for_each(|place| rows.extend_static(*place, of_one));
-        then_at_rest.resize(widths.used(), 0.0);
         write_at_rest(of_one, &history.static_loads, then_at_rest);
         influence.clear();
         let response = look.rows[row].response;
         influence.extend(places.iter().map(|place| place.map_or(0.0, |place| rows.influence_of(response, place))));
-        let states = [&then[..widths.used()], &then_at_rest[..]];
+        let states = [&then[..], &then_at_rest[..]];
         let [own, other] = [states[of], states[1 - of]];
         let of_state = |state: &[f64]| value(&look.rows[row].factors, influence, state);
         match stop.and_then(|stop| stop.tip.map(|tip| (stop.axle, tip))) {
@@ -221,10 +211,9 @@ impl Watch for Observer<'_> {
         if let (Some((row, [most, least], steps)), Some(follower)) = (self.growing, &self.follower)
             && follower.is_past(&self.look.marks)
         {
-            let [widths, _] = self.widths(history.axles);
+            let widths = self.widths(history);
             let Desk { then, influence, .. } = &mut self.desk;
             let (rows, look) = (self.rows, &self.look.rows[row]);
-            then.resize(widths.all(), 0.0);
             let mut seen = [most, least];
             for step in steps..history.len() {
                 history.write(step, &widths, self.factors.as_ref(), then);
@@ -232,7 +221,7 @@ impl Watch for Observer<'_> {
                 let places = (0..history.axles).map(|axle| rows.place(history.x(step, axle)));
                 influence
                     .extend(places.map(|place| place.map_or(0.0, |place| rows.influence_of(look.response, place))));
-                let value = value(&look.factors, influence, &then[..widths.used()]);
+                let value = value(&look.factors, influence, then);
                 seen = [seen[0].max(value), seen[1].min(value)];
             }
             self.growing = Some((row, seen, history.len()));

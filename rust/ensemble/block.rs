@@ -7,9 +7,9 @@ use super::bounds::survey;
 use super::table::{Chunk, Table};
 use super::tabulated::Tabulated;
 use crate::crossing::tail::FreeRows;
-use crate::extremes::{Peaks, Seen, at_steps, at_stop, interpolate};
+use crate::extremes::{Peaks, Seen, Steps, at_stop, interpolate};
 use crate::lane::{Lane, Lanes, Work};
-use crate::recovery::Rows;
+use crate::recovery::{Placed, Rows};
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
 use crate::statistics::Ride;
@@ -403,7 +403,15 @@ fn look_at_steps<L: Lanes>(
     let Scene { table, rows, look, .. } = *scene;
     let steps = stretch.from..stretch.from + stretch.steps;
     if L::SAMPLES == 1 && !table.laid_out {
-        return at_steps(watched, rows, look, stretch, if loaded { table.places(steps) } else { &[] });
+        let (mut all, places) = (Steps::<1>::default(), if loaded { table.places(steps) } else { &[] });
+        let (c, axles) = (rows.width(), if loaded { table.axles() } else { 0 });
+        all.begin(stretch.from, axles);
+        for (i, kept) in stretch.taken().enumerate() {
+            all.coordinates.extend(kept[..c].iter().map(|a| a.get(0)));
+            let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
+            all.placed.extend(here.map(|(&place, load)| Placed::new(place, [load.get(0)])));
+        }
+        return all.look(rows, look, [watched]);
     }
     let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
     L::dispatch(Surveying { watched, look, stretch, chunks, glanced });
