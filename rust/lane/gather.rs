@@ -9,8 +9,10 @@ pub trait Gather<L: Lane> {
     /// In lanes.
     type Lanes;
 
-    /// From those of each sample, which must have the same [`ways`](Gather::ways).
-    fn gather(each: &[&Self]) -> Self::Lanes;
+    /// From that of each sample, by its number; all must have the same [`ways`](Gather::ways).
+    fn gather<'a>(each: impl Fn(usize) -> &'a Self) -> Self::Lanes
+    where
+        Self: 'a;
 
     /// Adds what samples must have in common to be gathered: in these they differ in the way they go, not only in numbers.
     fn ways(&self, ways: &mut Vec<bool>);
@@ -19,8 +21,8 @@ pub trait Gather<L: Lane> {
 impl<L: Lane> Gather<L> for f64 {
     type Lanes = L;
 
-    fn gather(each: &[&f64]) -> L {
-        L::from_fn(|sample| *each[sample])
+    fn gather<'a>(each: impl Fn(usize) -> &'a f64) -> L {
+        L::from_fn(|sample| *each(sample))
     }
 
     fn ways(&self, _: &mut Vec<bool>) {}
@@ -29,8 +31,8 @@ impl<L: Lane> Gather<L> for f64 {
 impl<L: Lane> Gather<L> for bool {
     type Lanes = bool;
 
-    fn gather(each: &[&bool]) -> bool {
-        *each[0]
+    fn gather<'a>(each: impl Fn(usize) -> &'a bool) -> bool {
+        *each(0)
     }
 
     fn ways(&self, ways: &mut Vec<bool>) {
@@ -41,8 +43,8 @@ impl<L: Lane> Gather<L> for bool {
 impl<L: Lane> Gather<L> for usize {
     type Lanes = usize;
 
-    fn gather(each: &[&usize]) -> usize {
-        *each[0]
+    fn gather<'a>(each: impl Fn(usize) -> &'a usize) -> usize {
+        *each(0)
     }
 
     fn ways(&self, _: &mut Vec<bool>) {}
@@ -51,8 +53,8 @@ impl<L: Lane> Gather<L> for usize {
 impl<L: Lane> Gather<L> for Range<usize> {
     type Lanes = Range<usize>;
 
-    fn gather(each: &[&Range<usize>]) -> Range<usize> {
-        each[0].clone()
+    fn gather<'a>(each: impl Fn(usize) -> &'a Range<usize>) -> Range<usize> {
+        each(0).clone()
     }
 
     fn ways(&self, _: &mut Vec<bool>) {}
@@ -61,8 +63,11 @@ impl<L: Lane> Gather<L> for Range<usize> {
 impl<L: Lane, T: Gather<L>> Gather<L> for Vec<T> {
     type Lanes = Vec<T::Lanes>;
 
-    fn gather(each: &[&Vec<T>]) -> Vec<T::Lanes> {
-        (0..each[0].len()).map(|i| T::gather(&each.iter().map(|all| &all[i]).collect::<Vec<_>>())).collect()
+    fn gather<'a>(each: impl Fn(usize) -> &'a Vec<T>) -> Vec<T::Lanes>
+    where
+        T: 'a,
+    {
+        (0..each(0).len()).map(|i| T::gather(|sample| &each(sample)[i])).collect()
     }
 
     fn ways(&self, ways: &mut Vec<bool>) {
@@ -73,8 +78,11 @@ impl<L: Lane, T: Gather<L>> Gather<L> for Vec<T> {
 impl<L: Lane, T: Gather<L>> Gather<L> for Option<T> {
     type Lanes = Option<T::Lanes>;
 
-    fn gather(each: &[&Option<T>]) -> Option<T::Lanes> {
-        each.iter().map(|one| one.as_ref()).collect::<Option<Vec<_>>>().map(|each| T::gather(&each))
+    fn gather<'a>(each: impl Fn(usize) -> &'a Option<T>) -> Option<T::Lanes>
+    where
+        T: 'a,
+    {
+        each(0).as_ref().map(|_| T::gather(|sample| each(sample).as_ref().expect("all samples go the same ways")))
     }
 
     fn ways(&self, ways: &mut Vec<bool>) {
@@ -89,11 +97,9 @@ macro_rules! gather {
         impl<L: $crate::lane::Lane> $crate::lane::gather::Gather<L> for $name<f64> {
             type Lanes = $name<L>;
 
-            fn gather(each: &[&Self]) -> $name<L> {
+            fn gather<'a>(each: impl Fn(usize) -> &'a Self) -> $name<L> {
                 $name {
-                    $($field: $crate::lane::gather::Gather::<L>::gather(
-                        &each.iter().map(|one| &one.$field).collect::<Vec<_>>(),
-                    ),)*
+                    $($field: $crate::lane::gather::Gather::<L>::gather(|sample| &each(sample).$field),)*
                 }
             }
 

@@ -37,7 +37,8 @@ macro_rules! on {
 /// The same bits as another type.
 macro_rules! as_bits {
     ($value:expr, $from:ty => $to:ty) => {
-        // SAFETY: a register and an array of its numbers have the same size, and all bits are valid in both.
+        // SAFETY: a register and an array of its numbers have the same size, all bits are valid in both, and where there are
+        // references to them the register is aligned more strictly.
         unsafe { transmute::<$from, $to>($value) }
     };
 }
@@ -117,7 +118,7 @@ macro_rules! register {
 
             #[inline(always)]
             fn get(&self, sample: usize) -> f64 {
-                as_bits!(self.0, $vector => [f64; $samples])[sample]
+                as_bits!(&self.0, &$vector => &[f64; $samples])[sample]
             }
 
             #[inline(always)]
@@ -193,7 +194,7 @@ macro_rules! register {
 
             #[inline(always)]
             fn get(&self, sample: usize) -> u64 {
-                as_bits!(self.0, $words => [u64; $samples])[sample]
+                as_bits!(&self.0, &$words => &[u64; $samples])[sample]
             }
 
             #[inline(always)]

@@ -61,14 +61,14 @@ pub enum Law<L> {
 impl<L: Lane> Gather<L> for Law<f64> {
     type Lanes = Law<L>;
 
-    fn gather(each: &[&Self]) -> Law<L> {
+    fn gather<'a>(each: impl Fn(usize) -> &'a Self) -> Law<L> {
         let numbers = |law: &Law<f64>| match *law {
             Law::Rigid { limit } => [limit, 0.0, 0.0],
             Law::Elastic { limit, give } => [limit, give, 0.0],
             Law::Leaf { limit, decay, lag } => [limit, decay, lag],
         };
-        let [limit, second, third] = [0, 1, 2].map(|k| L::from_fn(|s| numbers(each[s])[k]));
-        match each[0] {
+        let [limit, second, third] = [0, 1, 2].map(|k| L::from_fn(|sample| numbers(each(sample))[k]));
+        match each(0) {
             Law::Rigid { .. } => Law::Rigid { limit },
             Law::Elastic { .. } => Law::Elastic { limit, give: second },
             Law::Leaf { .. } => Law::Leaf { limit, decay: second, lag: third },

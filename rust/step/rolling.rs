@@ -167,6 +167,7 @@ impl Rolling {
 
     /// Force along the road at a contact of a freely rolling vehicle, in the direction of travel: what pushes it down the
     /// slope of bridge and road, less its brakes.
+    #[inline(always)]
     fn along(
         &self,
         stepper: &Stepper<f64>,
@@ -193,6 +194,7 @@ impl Rolling {
 }
 
 /// Puts the contacts of a freely rolling vehicle where it has them; whether one had still to move.
+#[inline(always)]
 fn place(
     unit: &Unit<f64>,
     travel: Coordinate<f64>,

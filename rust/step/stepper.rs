@@ -208,18 +208,12 @@ impl<L: Lane> Stepper<L> {
 
     /// From one stepper for each sample, of the same vehicles, modes and scheme but for their numbers.
     pub fn gather(each: &[&Stepper<f64>]) -> Self {
-        fn of<'s, T: Gather<L, Lanes = G>, L: Lane, G>(
-            each: &[&'s Stepper<f64>],
-            part: fn(&'s Stepper<f64>) -> &'s T,
-        ) -> G {
-            T::gather(&each.iter().map(|stepper| part(stepper)).collect::<Vec<_>>())
-        }
         Stepper::of(
-            of(each, |stepper| &stepper.newmark),
-            of(each, |stepper| &stepper.modal),
-            of(each, |stepper| &stepper.units),
-            of(each, |stepper| &stepper.elements),
-            of(each, |stepper| &stepper.surge_settled),
+            Gather::gather(|sample| &each[sample].newmark),
+            Gather::gather(|sample| &each[sample].modal),
+            Gather::gather(|sample| &each[sample].units),
+            Gather::gather(|sample| &each[sample].elements),
+            Gather::gather(|sample| &each[sample].surge_settled),
         )
     }
 

@@ -58,8 +58,8 @@ gather!(Unit { rig, propulsion, direction, contacts, rubbing, coordinates, posit
 impl<L: Lane> Gather<L> for Propulsion {
     type Lanes = Propulsion;
 
-    fn gather(each: &[&Propulsion]) -> Propulsion {
-        *each[0]
+    fn gather<'a>(each: impl Fn(usize) -> &'a Propulsion) -> Propulsion {
+        *each(0)
     }
 
     fn ways(&self, ways: &mut Vec<bool>) {
