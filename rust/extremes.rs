@@ -117,9 +117,9 @@ impl<L: Lane> Seen<L> {
     /// Largest and smallest of a row in one lane, each with its instant; `when` that is. Of equal values the first counts,
     /// and if they are one instant the stop.
     pub fn sides(&self, row: usize, lane: usize, when: impl Fn(Instant) -> f64) -> [(f64, Instant); 2] {
-        let pick = |of: fn(&Peaks<L>) -> (L, L), sense: f64| {
+        let pick = |of: fn(&Peaks<L>) -> [&L; 2], sense: f64| {
             let number = |watched: &Peaks<L>| {
-                let (value, at) = of(watched);
+                let [value, at] = of(watched);
                 (value.get(lane), at.get(lane) as usize)
             };
             let ((at_step, step), (at_stop, stop)) = (number(&self.steps[row]), number(&self.stops[row]));
@@ -132,7 +132,7 @@ impl<L: Lane> Seen<L> {
                 (at_step + 0.0, step)
             }
         };
-        [pick(|w| (w.max, w.max_at), 1.0), pick(|w| (w.min, w.min_at), -1.0)]
+        [pick(|w| [&w.max, &w.max_at], 1.0), pick(|w| [&w.min, &w.min_at], -1.0)]
     }
 }
 
@@ -257,11 +257,11 @@ impl<const STATES: usize> pulp::WithSimd for &mut Looking<'_, STATES> {
         let width = rows.width();
         for (b, seen) in blocks {
             // From memory to registers and back as a whole: the compiler takes numbers side by side only so.
-            let mut own = *seen;
+            let (mut own, of_block) = (*seen, rows.of_block(*b));
             let mut number = *from as f64;
             for (i, coordinates) in coordinates.chunks_exact(width * STATES).enumerate() {
                 let states = std::array::from_fn(|state| &coordinates[state * width..][..width]);
-                let values = rows.block(*b, states, &placed[i * axles..][..*axles]);
+                let values = of_block.at(states, &placed[i * axles..][..*axles]);
                 for (own, values) in own.iter_mut().zip(values) {
                     own.take(Responding::from(values), Responding::splat(number));
                 }

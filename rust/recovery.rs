@@ -207,8 +207,9 @@ impl Rows {
 
     /// Influence of an axle load on a response.
     pub fn influence_of(&self, response: usize, (panel, f): (usize, f64)) -> f64 {
-        let cubics = &self.lines[panel * self.blocks() + response / WIDTH];
-        value(cubics.map(|each| each[response % WIDTH]), f)
+        let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + response / WIDTH];
+        let i = response % WIDTH;
+        value([c0[i], c1[i], c2[i], c3[i]], f)
     }
 
     /// Whether two responses have the same row, to the bit.
@@ -233,25 +234,41 @@ impl Rows {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
     }
 
-    /// One block of responses to the coordinates and the loads of each state.
+    /// The rows of one block.
+    #[inline(always)]
+    pub fn of_block(&self, b: usize) -> BlockRows<'_> {
+        BlockRows {
+            factors: &self.factors[b * self.width..(b + 1) * self.width],
+            lines: &self.lines[b..],
+            blocks: self.blocks(),
+        }
+    }
+}
+
+/// The rows of a block of responses.
+#[derive(Debug, Clone, Copy)]
+pub struct BlockRows<'a> {
+    factors: &'a [Block],
+    /// From its cubics on the first panel on, and how far it is to those on the next.
+    lines: &'a [[Block; 4]],
+    blocks: usize,
+}
+
+impl BlockRows<'_> {
+    /// Its responses to the coordinates and the loads of each state.
     // Always inlined, so that it is compiled for the instruction set of the loop around it.
     #[inline(always)]
-    pub fn block<const STATES: usize>(
-        &self,
-        b: usize,
-        coordinates: [&[f64]; STATES],
-        axles: &[Placed<STATES>],
-    ) -> [Block; STATES] {
+    pub fn at<const STATES: usize>(self, coordinates: [&[f64]; STATES], axles: &[Placed<STATES>]) -> [Block; STATES] {
         let mut values = [[0.0; WIDTH]; STATES];
-        for (c, factor) in self.factors[b * self.width..(b + 1) * self.width].iter().enumerate() {
-            for (values, coordinates) in values.iter_mut().zip(coordinates) {
+        for (values, coordinates) in values.iter_mut().zip(coordinates) {
+            for (factor, a) in self.factors.iter().zip(coordinates) {
                 for i in 0..WIDTH {
-                    values[i] += factor[i] * coordinates[c];
+                    values[i] += factor[i] * a;
                 }
             }
         }
         for Placed { panel, fraction, loads } in axles {
-            let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + b];
+            let [c0, c1, c2, c3] = &self.lines[panel * self.blocks];
             for i in 0..WIDTH {
                 let g = value([c0[i], c1[i], c2[i], c3[i]], *fraction);
                 for (values, load) in values.iter_mut().zip(loads) {

@@ -361,7 +361,7 @@ impl pulp::WithSimd for &mut Filling<'_> {
             for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
                 let first = b * WIDTH;
                 let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;
-                let values = rows.block(b, [&row[..c], &at_rest[..c]], &placed);
+                let values = rows.of_block(b).at([&row[..c], &at_rest[..c]], &placed);
                 for (out, values) in out.iter_mut().zip(values) {
                     out.extend_from_slice(&values[wanted.clone()]);
                 }
