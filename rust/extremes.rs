@@ -118,8 +118,8 @@ impl<L: Lane> Seen<L> {
     /// and if they are one instant the stop.
     pub fn sides(&self, row: usize, lane: usize, when: impl Fn(Instant) -> f64) -> [(f64, Instant); 2] {
         let pick = |of: fn(&Peaks<L>) -> [&L; 2], sense: f64| {
-            let number = |watched: &Peaks<L>| {
-                let [value, at] = of(watched);
+            let number = |peaks: &Peaks<L>| {
+                let [value, at] = of(peaks);
                 (value.get(lane), at.get(lane) as usize)
             };
             let ((at_step, step), (at_stop, stop)) = (number(&self.steps[row]), number(&self.stops[row]));
@@ -168,7 +168,7 @@ pub fn interpolate<L: Lane>(stop: &Stop, [before, after]: [&[L]; 2], widths: &Wi
 /// Takes in a stop, given coordinates and loads then, and what they do to the rows asked for.
 #[inline(always)]
 pub fn at_stop<L: Lane>(
-    watched: &mut [Peaks<L>],
+    peaks: &mut [Peaks<L>],
     look: &Selection,
     (stop, number, moment): (&Stop, usize, &PassingInfluence),
     then: &[L],
@@ -177,11 +177,11 @@ pub fn at_stop<L: Lane>(
     let c = look.rows.first().map_or(0, |row| row.factors.len());
     for (&r, influence) in look.asked[stop.asked].iter().zip(moment.influence.chunks_exact(then.len() - c)) {
         let value = value(&look.rows[r].factors, influence, then);
-        watched[r].take(value, at);
+        peaks[r].take(value, at);
         if let Some((tip, sign)) = stop.tip
             && tip == r
         {
-            watched[r].take(value + L::splat(sign) * then[c + stop.axle], at);
+            peaks[r].take(value + L::splat(sign) * then[c + stop.axle], at);
         }
     }
 }

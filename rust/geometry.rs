@@ -52,9 +52,9 @@ pub trait Geometry<L: Lane> {
     /// The road under the contact.
     fn surface(&self, contact: usize) -> Surface<L>;
 
-    /// The [`Stepper::coupling`](crate::step::stepper::Stepper::coupling) of this place, where it is known, the same in
+    /// The [`Stepper::interaction`](crate::step::stepper::Stepper::interaction) of this place, where it is known, the same in
     /// all lanes.
-    fn coupling(&self) -> Option<&[f64]> {
+    fn interaction(&self) -> Option<&[f64]> {
         None
     }
 }

@@ -66,11 +66,11 @@ impl<L: Lane> Ride<L> {
             let loads = || chunk.rows.chunks_exact(width).map(|row| row[number]).enumerate();
             let [most, least] = chunk.ends[number];
             if L::any(self.loads[k].max.less(most) | least.less(self.loads[k].min)) {
-                let mut watched = self.loads[k];
+                let mut peaks = self.loads[k];
                 for (i, load) in loads() {
-                    watched.take(load, L::splat((from + i) as f64));
+                    peaks.take(load, L::splat((from + i) as f64));
                 }
-                self.loads[k] = watched;
+                self.loads[k] = peaks;
             }
             if counted {
                 let mut squares = self.deviations[k];

@@ -171,12 +171,12 @@ impl<L: Lane> Work for Seen<'_, L> {
     fn run(self) -> Self::Output {
         let mut all = Vec::new();
         for rows in self.0.chunks(L::SAMPLES) {
-            let mut watched = Peaks::<L>::nothing();
+            let mut peaks = Peaks::<L>::nothing();
             for (step, _) in rows[0].iter().enumerate() {
                 let value = L::from_fn(|lane| rows[lane.min(rows.len() - 1)][step]);
-                watched.take(value, L::splat(step as f64));
+                peaks.take(value, L::splat(step as f64));
             }
-            let Peaks { max, max_at, min, min_at } = watched;
+            let Peaks { max, max_at, min, min_at } = peaks;
             all.extend((0..rows.len()).map(|lane| [max, max_at, min, min_at].map(|v| v.get(lane))));
         }
         all

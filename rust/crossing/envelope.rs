@@ -49,8 +49,8 @@ pub fn axle_loads(history: &History, rides: &[Ride<f64>]) -> Envelope {
     let start = || history.static_loads.iter().zip(&history.loads).map(|(&value, &load)| at(0.0, value, load));
     Envelope {
         dynamic: Extremes {
-            max: loads().map(|(watched, &at_rest)| at(watched.max_at, watched.max, at_rest)).collect(),
-            min: loads().map(|(watched, &at_rest)| at(watched.min_at, watched.min, at_rest)).collect(),
+            max: loads().map(|(peaks, &at_rest)| at(peaks.max_at, peaks.max, at_rest)).collect(),
+            min: loads().map(|(peaks, &at_rest)| at(peaks.min_at, peaks.min, at_rest)).collect(),
         },
         at_rest: Extremes { max: start().collect(), min: start().collect() },
     }

@@ -366,8 +366,8 @@ impl<L: Lane> Work for Looking<'_, L> {
             at_stop(&mut seen.stops, scene.look, (next, *stop, moment), between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
-            for (watched, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
-                *watched = watched.unless(ended, before);
+            for (peaks, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
+                *peaks = peaks.unless(ended, before);
             }
             *stop += 1;
         }
@@ -376,7 +376,7 @@ impl<L: Lane> Work for Looking<'_, L> {
 
 /// The responses at the steps of a stretch being looked at.
 struct Surveying<'s, L> {
-    watched: &'s mut [Peaks<L>],
+    peaks: &'s mut [Peaks<L>],
     look: &'s Selection,
     stretch: &'s Tape<L>,
     chunks: Option<&'s [Chunk]>,
@@ -388,14 +388,14 @@ impl<L: Lane> Work for Surveying<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        survey(self.watched, &self.look.rows, self.stretch, self.chunks, self.glanced);
+        survey(self.peaks, &self.look.rows, self.stretch, self.chunks, self.glanced);
     }
 }
 
 /// Looks at the responses at the steps of a stretch, with axles on the bridge or not.
 fn look_at_steps<L: Lanes>(
     scene: &Scene<'_>,
-    watched: &mut [Peaks<L>],
+    peaks: &mut [Peaks<L>],
     stretch: &Tape<L>,
     loaded: bool,
     (glanced, own_chunks): (&mut Vec<[L; 2]>, &mut Vec<Chunk>),
@@ -411,10 +411,10 @@ fn look_at_steps<L: Lanes>(
             let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
             all.placed.extend(here.map(|(&place, load)| Placed::new(place, [load.get(0)])));
         }
-        return all.look(rows, look, [watched]);
+        return all.look(rows, look, [peaks]);
     }
     let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
-    L::dispatch(Surveying { watched, look, stretch, chunks, glanced });
+    L::dispatch(Surveying { peaks, look, stretch, chunks, glanced });
 }
 
 /// Marches a group of samples through the table.

@@ -15,7 +15,7 @@ use crate::tape::{PART, PARTS, Tape};
 /// there is no axle on the bridge. `glanced` is scratch.
 #[inline(always)]
 pub fn survey<L: Lane>(
-    watched: &mut [Peaks<L>],
+    peaks: &mut [Peaks<L>],
     rows: &[Row],
     stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,
@@ -26,8 +26,8 @@ pub fn survey<L: Lane>(
     macro_rules! sizes {
         ($($c:literal $a:literal),*) => {
             match (stretch.widths.coordinates, if chunks.is_some() { stretch.widths.axles } else { 0 }) {
-                $(($c, $a) if !cfg!(debug_assertions) => survey_sizes($c, $a, watched, rows, stretch, chunks, glanced),)*
-                (c, a) => survey_sizes(c, a, watched, rows, stretch, chunks, glanced),
+                $(($c, $a) if !cfg!(debug_assertions) => survey_sizes($c, $a, peaks, rows, stretch, chunks, glanced),)*
+                (c, a) => survey_sizes(c, a, peaks, rows, stretch, chunks, glanced),
             }
         };
     }
@@ -39,7 +39,7 @@ pub fn survey<L: Lane>(
 fn survey_sizes<L: Lane>(
     c: usize,
     a: usize,
-    watched: &mut [Peaks<L>],
+    peaks: &mut [Peaks<L>],
     rows: &[Row],
     stretch: &Tape<L>,
     chunks: Option<&[Chunk]>,
@@ -50,7 +50,7 @@ fn survey_sizes<L: Lane>(
     let (felt, width) = (c + a, stretch.widths.all());
     // What the extremes must reach.
     glanced.clear();
-    for (r, (Row { factors, .. }, seen)) in rows.iter().zip(watched.iter()).enumerate() {
+    for (r, (Row { factors, .. }, seen)) in rows.iter().zip(peaks.iter()).enumerate() {
         let (mut most, mut least) = (seen.max, seen.min);
         for (chunk, kept) in stretch.chunks().enumerate() {
             let at = middle(kept.rows.len() / width);
@@ -70,10 +70,10 @@ fn survey_sizes<L: Lane>(
         }
         for (r, Row { factors, turned, .. }) in rows.iter().enumerate() {
             let (factors, turned) = (&factors[..c], &turned[..c]);
-            if !watched[r].may_grow(reach(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
+            if !peaks[r].may_grow(reach(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
                 continue;
             }
-            let mut seen = watched[r];
+            let mut seen = peaks[r];
             for part in 0..count.div_ceil(PART) {
                 let ends = &kept.parts[part * width..][..felt];
                 let reached = reach(factors, turned, &parts[(r * PARTS + part) * a..][..a], ends, positive);
@@ -88,7 +88,7 @@ fn survey_sizes<L: Lane>(
                     at += 1.0;
                 }
             }
-            watched[r] = seen;
+            peaks[r] = seen;
         }
     }
 }

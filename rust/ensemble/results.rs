@@ -160,8 +160,8 @@ impl Record<'_> {
     ) {
         let column = |column: Column| format.range(column).start;
         for (own, &static_load) in static_loads.iter().enumerate() {
-            let (k, watched) = (axles + own, &ride.loads[own]);
-            for (side, value) in [watched.max, watched.min].into_iter().enumerate() {
+            let (k, peaks) = (axles + own, &ride.loads[own]);
+            for (side, value) in [peaks.max, peaks.min].into_iter().enumerate() {
                 self.numbers[column(Column::Loads) + side * format.axles + k] = value.get(lane) + 0.0;
             }
             self.numbers[column(Column::LoadCoefficients) + k] = ride.load_coefficient(own, lane, static_load);

@@ -5,7 +5,7 @@ use super::clock::Pace;
 use super::sample::Samples;
 use super::study::{March, Study};
 use super::table::{Below, READY};
-use super::tabulated::COUPLED;
+use super::tabulated::MOST_INTERACTIONS;
 use super::workers::Workers;
 use crate::error::Error;
 use crate::memory;
@@ -98,7 +98,7 @@ impl<'a> Room<'a> {
             let ready = rows * axles * steps <= READY as f64;
             let chunks = if ready { steps / CHUNK as f64 + 1.0 } else { 1.0 + (KEPT / CHUNK) as f64 / (width + axles) };
             numbers += influence * chunks;
-            numbers += if self.alike { COUPLED as f64 } else { 0.0 };
+            numbers += if self.alike { MOST_INTERACTIONS as f64 } else { 0.0 };
         }
         self.of_worker() + geometry + self.of_stops(kind) + size_of::<f64>() as f64 * numbers
     }

@@ -5,7 +5,7 @@ use super::results::{Column, Failure, Format, Record, encoded};
 use super::sample::Samples;
 use super::study::{Kind, Study};
 use super::table::Table;
-use super::tabulated::{Couplings, Shared, Tabulated};
+use super::tabulated::{Interactions, Shared, Tabulated};
 use super::varied::{VariedBridge, passages};
 use crate::crossing::tail;
 use crate::damping::ModalDamping;
@@ -254,7 +254,7 @@ impl Task<'_> {
         stop: StopToken<'_>,
     ) -> Result<Crossed<L>, Trouble> {
         let Task { study, samples, .. } = *self;
-        let Shared { table, couplings } = self.shared;
+        let Shared { table, interactions } = self.shared;
         let kind: &Kind = &study.kinds[self.kind];
         let scene = Scene { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely };
         let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
@@ -290,11 +290,11 @@ impl Task<'_> {
             BridgeFactors { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
         });
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
-        let couplings = (samples.alike() && table.laid_out).then(|| {
-            let work = || Couplings::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
-            couplings.get_or_init(work)
+        let interactions = (samples.alike() && table.laid_out).then(|| {
+            let work = || Interactions::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
+            interactions.get_or_init(work)
         });
-        let geometry = Tabulated::new(table, roads, speed, couplings);
+        let geometry = Tabulated::new(table, roads, speed, interactions);
         let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
         let found = cross_group(&scene, &mut group, steppers, scratch, stop)?;
         let at_rest = self.format.own_statics.then(|| {
@@ -356,8 +356,8 @@ impl Task<'_> {
         let [growth, side] = growth.map(|each| each.get(lane));
         record.numbers[start..start + 3].copy_from_slice(&[tail, growth, look.side(side)]);
         record.write_ride(format, &found.ride, lane, [0, 0], static_loads, h);
-        for (k, watched) in found.ride.loads.iter().enumerate() {
-            for (side, at) in [watched.max_at, watched.min_at].into_iter().enumerate() {
+        for (k, peaks) in found.ride.loads.iter().enumerate() {
+            for (side, at) in [peaks.max_at, peaks.min_at].into_iter().enumerate() {
                 record.instants[2 * responses + side * format.axles + k] = at.get(lane) as u32;
             }
         }

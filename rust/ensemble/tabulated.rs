@@ -11,34 +11,34 @@ use crate::step::newmark::Coordinate;
 use crate::step::stepper::Stepper;
 use crate::stops::Positions;
 
-/// Most numbers that [`Couplings`] keep; beyond that they are worked out in every step.
-pub const COUPLED: usize = 1 << 21;
+/// Most numbers that [`Interactions`] keep; beyond that they are worked out in every step.
+pub const MOST_INTERACTIONS: usize = 1 << 21;
 
 /// What the steps of samples that are alike need to know about the places of the axles on the bridge: by rows of a table,
 /// from the first with an axle on it.
 #[derive(Debug, Clone, Default)]
-pub struct Couplings {
+pub struct Interactions {
     width: usize,
     numbers: Vec<f64>,
 }
 
-impl Couplings {
+impl Interactions {
     /// Of samples with this speed [m/s], as their step works it out; none if that is too much.
     pub fn new(table: &Table, stepper: &mut Stepper<f64>, speed: f64) -> Self {
         let road = [0.0];
         let mut geometry = Tabulated::new(table, &road, speed, None);
-        let mut couplings = Couplings::default();
+        let mut interactions = Interactions::default();
         for row in table.first..=table.last() {
             geometry.row = row;
             geometry.step = row;
-            let coupling = stepper.coupling(&geometry);
-            couplings.width = coupling.len();
-            if couplings.width * (table.last() + 1 - table.first) > COUPLED {
-                return Couplings::default();
+            let interaction = stepper.interaction(&geometry);
+            interactions.width = interaction.len();
+            if interactions.width * (table.last() + 1 - table.first) > MOST_INTERACTIONS {
+                return Interactions::default();
             }
-            couplings.numbers.extend_from_slice(coupling);
+            interactions.numbers.extend_from_slice(interaction);
         }
-        couplings
+        interactions
     }
 }
 
@@ -48,13 +48,13 @@ pub struct Shared {
     /// The geometry.
     pub table: Table,
     /// What their steps have in common if they are alike, for whichever worker comes first to work out.
-    pub couplings: OnceLock<Couplings>,
+    pub interactions: OnceLock<Interactions>,
 }
 
 impl Shared {
     /// With nothing worked out yet.
     pub fn new(table: Table) -> Self {
-        Shared { table, couplings: OnceLock::new() }
+        Shared { table, interactions: OnceLock::new() }
     }
 }
 
@@ -67,7 +67,7 @@ pub struct Tabulated<'a, L> {
     /// Their speeds [m/s].
     pub speed: L,
     /// Where all lanes are alike, how the axles feel the bridge, by row from the first with one on it.
-    couplings: Option<&'a Couplings>,
+    interactions: Option<&'a Interactions>,
     /// The step, and where the table has it.
     step: usize,
     row: usize,
@@ -77,11 +77,11 @@ pub struct Tabulated<'a, L> {
 impl<'a, L: Lane> Tabulated<'a, L> {
     /// At the start.
     #[inline(always)]
-    pub fn new(table: &'a Table, road: &'a [L], speed: L, couplings: Option<&'a Couplings>) -> Self {
+    pub fn new(table: &'a Table, road: &'a [L], speed: L, interactions: Option<&'a Interactions>) -> Self {
         let zero = L::splat(0.0);
         let level = Surface { elevation: zero, slope: zero, curvature: zero };
         let surfaces = vec![level; table.axles()];
-        let mut shared = Tabulated { table, road, speed, couplings, step: 0, row: 0, surfaces };
+        let mut shared = Tabulated { table, road, speed, interactions, step: 0, row: 0, surfaces };
         shared.look_down();
         shared
     }
@@ -163,8 +163,8 @@ impl<L: Lane> Geometry<L> for Tabulated<'_, L> {
     }
 
     #[inline(always)]
-    fn coupling(&self) -> Option<&[f64]> {
-        let Couplings { width, numbers } = self.couplings.filter(|couplings| couplings.width > 0)?;
+    fn interaction(&self) -> Option<&[f64]> {
+        let Interactions { width, numbers } = self.interactions.filter(|interactions| interactions.width > 0)?;
         let row = self.row.checked_sub(self.table.first)?;
         numbers.get(row * width..(row + 1) * width)
     }

@@ -9,7 +9,7 @@ use crate::lane::Lane;
 
 /// How the contacts feel the bridge and each other where they stand: what a step needs that depends on the geometry and
 /// the parameters alone, not on the state.
-pub struct Coupling<'r, L> {
+pub struct Interaction<'r, L> {
     /// Φ⁰, contact by contact.
     pub shapes: &'r [L],
     /// Modal forces under the static axle loads, contact by contact.
@@ -22,11 +22,11 @@ pub struct Coupling<'r, L> {
     pub held: &'r [L],
 }
 
-impl<'r, L> Coupling<'r, L> {
+impl<'r, L> Interaction<'r, L> {
     #[inline(always)]
     pub fn of(form: Form, numbers: &'r [L]) -> Self {
         let [a, b, c, d, e] = form.parts();
-        Coupling {
+        Interaction {
             shapes: &numbers[..a],
             pressing: &numbers[a..b],
             receptance: &numbers[b..c],

@@ -69,14 +69,14 @@ impl Form {
         self.elements.contacts + self.elements.rubbing
     }
 
-    /// Where each part of a [`Coupling`](super::compliance::Coupling) begins, and where the last ends.
+    /// Where each part of a [`Interaction`](super::compliance::Interaction) begins, and where the last ends.
     #[inline(always)]
     pub const fn parts(self) -> [usize; 5] {
         let (each, n) = (self.contacts() * self.modes, self.all());
         [each, 2 * each, 3 * each, 3 * each + n * n, 3 * each + n * n + n * HELD]
     }
 
-    /// How many numbers a [`Coupling`](super::compliance::Coupling) has.
+    /// How many numbers a [`Interaction`](super::compliance::Interaction) has.
     #[inline(always)]
     pub const fn width(self) -> usize {
         self.parts()[4]
@@ -99,7 +99,7 @@ pub struct Room<C, N, P> {
     pub loaded: C,
     /// What unit modal accelerations do to δ of a contact.
     pub senses: N,
-    pub coupling: N,
+    pub interaction: N,
     /// What the elements follow, but for the increments of the forces.
     pub offset: N,
     /// The increments, and those of the next sweep.
@@ -127,7 +127,7 @@ impl<C, N, P> Room<C, N, P> {
             accelerations: self.accelerations.as_mut(),
             loaded: self.loaded.as_mut(),
             senses: self.senses.as_mut(),
-            coupling: self.coupling.as_mut(),
+            interaction: self.interaction.as_mut(),
             offset: self.offset.as_mut(),
             increments: self.increments.as_mut(),
             fresh: self.fresh.as_mut(),
@@ -154,7 +154,7 @@ impl<L: Lane> UsualRoom<L> {
             accelerations: zeros,
             loaded: rest,
             senses: zeros,
-            coupling: zeros,
+            interaction: zeros,
             offset: zeros,
             increments: zeros,
             fresh: zeros,

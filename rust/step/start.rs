@@ -1,6 +1,6 @@
 //! The first instant: vehicles in equilibrium on the road where they stand, and what moves them out of it.
 
-use super::compliance::Coupling;
+use super::compliance::Interaction;
 use super::newmark::Coordinate;
 use super::sizes::{Desk, Form};
 use super::stand::Stood;
@@ -95,7 +95,7 @@ impl<L: Lane> Stepper<L> {
             desk.offset[k] = desk.offset[k] - contact.weights.value * geometry.surface(k).elevation;
         }
         self.solve_forces(form, state, desk)?;
-        let receptance = Coupling::of(form, desk.coupling).receptance;
+        let receptance = Interaction::of(form, desk.interaction).receptance;
         for (unit, stood) in self.units.iter().zip(stood) {
             for (k, load) in unit.contacts.clone().zip(stood.iter().flat_map(|stood| &stood.loads)) {
                 state.increments[k] = self.elements.contacts[k].floor().larger(state.increments[k] + *load);

@@ -5,7 +5,7 @@
 //! bodies that rub on each other through friction, so these are the unknowns: each follows δ_k = u_k − Σ S_kj p_j.
 
 use super::bridge_step::ModalSolve;
-use super::compliance::{Coupling, above};
+use super::compliance::{Interaction, above};
 use super::contact::{Contact, Prepared};
 use super::coupled_forces::{Elements, Rubbing};
 use super::friction::Stroke;
@@ -88,7 +88,7 @@ pub struct Stepper<L> {
     /// What the vehicles add to the compliance, by rows.
     pub(super) above: Vec<L>,
     pub(super) surge_settled: L,
-    /// The coupling without a bridge, which is the same everywhere.
+    /// The interaction without a bridge, which is the same everywhere.
     pub(super) alone: Vec<L>,
     pub(super) room: Room<Vec<Coordinate<L>>, Vec<L>, Vec<Prepared<L>>>,
 }
@@ -180,7 +180,7 @@ impl<L: Lane> Stepper<L> {
                 accelerations: zeros(modes),
                 loaded: rest(modes),
                 senses: zeros(modes),
-                coupling: zeros(form.width()),
+                interaction: zeros(form.width()),
                 offset: zeros(n),
                 increments: zeros(n),
                 fresh: zeros(n),
@@ -237,12 +237,12 @@ impl<L: Lane> Stepper<L> {
         Vibration::new(self.newmark, self.modal.clone())
     }
 
-    /// How the contacts feel the bridge where `geometry` has them, as numbers for [`Geometry::coupling`].
-    pub fn coupling(&mut self, geometry: &impl Geometry<L>) -> &[L] {
+    /// How the contacts feel the bridge where `geometry` has them, as numbers for [`Geometry::interaction`].
+    pub fn interaction(&mut self, geometry: &impl Geometry<L>) -> &[L] {
         let mut room = std::mem::take(&mut self.room);
         self.compliance(self.form, geometry, &mut room.desk());
         self.room = room;
-        &self.room.coupling
+        &self.room.interaction
     }
 
     /// Advances the state by one step of vehicles all of whose motion is prescribed, to where `geometry` has them.
@@ -251,7 +251,7 @@ impl<L: Lane> Stepper<L> {
         let form = Form { passive: self.form.passive || self.form.bare && geometry.steady(), ..self.form };
         geometry.advance();
         let geometry = &*geometry;
-        let known = geometry.coupling();
+        let known = geometry.interaction();
         // Debug builds know none: forms change no bit and take most of the time to compile.
         let mut usual = Room::usual();
         match (form, known) {
@@ -289,7 +289,7 @@ impl<L: Lane> Stepper<L> {
         driven
     }
 
-    /// The same in a step of this form; with the coupling there, if that is `known`.
+    /// The same in a step of this form; with the interaction there, if that is `known`.
     #[inline(always)]
     fn drive(
         &mut self,
@@ -343,7 +343,7 @@ impl<L: Lane> Stepper<L> {
         }
     }
 
-    /// Solves for the unknown forces and moves bridge and vehicles accordingly, with the coupling where
+    /// Solves for the unknown forces and moves bridge and vehicles accordingly, with the interaction where
     /// `geometry` has the contacts, if that is `known`.
     #[inline(always)]
     pub(super) fn react(
@@ -368,9 +368,9 @@ impl<L: Lane> Stepper<L> {
         desk: &mut Desk<'_, L>,
     ) {
         match known {
-            _ if form.modes == 0 => desk.coupling[..form.width()].copy_from_slice(&self.alone[..form.width()]),
+            _ if form.modes == 0 => desk.interaction[..form.width()].copy_from_slice(&self.alone[..form.width()]),
             Some(numbers) => {
-                for (own, number) in desk.coupling[..form.width()].iter_mut().zip(&numbers[..form.width()]) {
+                for (own, number) in desk.interaction[..form.width()].iter_mut().zip(&numbers[..form.width()]) {
                     *own = L::splat(*number);
                 }
             }
@@ -388,7 +388,7 @@ impl<L: Lane> Stepper<L> {
         state: &mut State<L>,
         desk: &mut Desk<'_, L>,
     ) -> Result<(), Unsettled> {
-        let Coupling { compliance, held, receptance, .. } = Coupling::of(form, desk.coupling);
+        let Interaction { compliance, held, receptance, .. } = Interaction::of(form, desk.interaction);
         let (prepared, strokes) = (&mut *desk.prepared, &state.strokes);
         self.elements.prepare(form.elements, held, strokes, prepared);
         let increments = &mut desk.increments[..form.all()];
@@ -417,7 +417,7 @@ impl<L: Lane> Stepper<L> {
     /// Commits the suspensions to the end of the step; what moves as prescribed goes on.
     #[inline(always)]
     pub(super) fn commit(&self, form: Form, state: &mut State<L>, desk: &Desk<'_, L>) {
-        let compliance = Coupling::of(form, desk.coupling).compliance;
+        let compliance = Interaction::of(form, desk.interaction).compliance;
         let (increments, strokes) = (&state.increments, &mut state.strokes);
         self.elements.commit(form.elements, desk.offset, compliance, desk.prepared, increments, strokes);
     }
@@ -429,7 +429,7 @@ impl<L: Lane> Stepper<L> {
         let Newmark { h, half_h, new: beta_h2, .. } = self.newmark;
         let [pressing, receptance, compliance, ..] = form.parts();
         let elements = &self.elements.contacts[..contacts];
-        let numbers = &mut desk.coupling[..form.width()];
+        let numbers = &mut desk.interaction[..form.width()];
         for (k, contact) in elements.iter().enumerate() {
             let (shapes, rest) = numbers.split_at_mut(pressing);
             let (own, first) = (&mut shapes[k * modes..][..modes], k * modes);
@@ -492,7 +492,7 @@ impl<L: Lane> Stepper<L> {
     #[inline(always)]
     fn bridge_gap(&self, form: Form, geometry: &impl Geometry<L>, desk: &mut Desk<'_, L>) {
         let (modes, contacts) = (form.modes, form.contacts());
-        let Coupling { shapes, pressing, .. } = Coupling::of(form, desk.coupling);
+        let Interaction { shapes, pressing, .. } = Interaction::of(form, desk.interaction);
         let (forces, accelerations) = (&mut desk.forces[..modes], &mut desk.accelerations[..modes]);
         let (loaded, offset) = (&mut desk.loaded[..modes], &mut desk.offset[..contacts]);
         for (force, resisting) in forces.iter_mut().zip(&desk.resisting[..modes]) {
