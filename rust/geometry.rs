@@ -1,14 +1,14 @@
 //! What the step asks about the contacts: where they stand, how they move, and what lies under them.
 //!
 //! In a single crossing motion is [`prescribed`], or [`free`] where a vehicle rolls, on the [`pavement`] of each
-//! vehicle; samples that move alike share a table ([`crate::ensemble::placing`]).
+//! vehicle; samples that move alike share a table ([`crate::ensemble::tabulated`]).
 
 pub mod free;
 pub mod pavement;
 pub mod prescribed;
 
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
-use crate::step::newmark::Coordinate;
 
 /// The road under a wheel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,4 +57,15 @@ pub trait Geometry<L: Lane> {
     fn interaction(&self) -> Option<&[f64]> {
         None
     }
+}
+
+/// Contacts that can follow their vehicles.
+pub trait Follow: Geometry<f64> {
+    /// Puts a contact where its vehicle has it, in a new step or in another pass of the same; `motion` counts from the end
+    /// of the bridge at which the vehicle enters, in its own direction. Says whether it had still to move; if not, nothing
+    /// changes, to the bit.
+    fn follow(&mut self, contact: usize, motion: Coordinate<f64>, new_step: bool) -> bool;
+
+    /// Holds a contact where it is, its vehicle having come to rest.
+    fn stop(&mut self, contact: usize);
 }

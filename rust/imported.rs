@@ -125,9 +125,7 @@ impl Given {
             Motion::Modes { rho, .. } => {
                 let by_masses =
                     (!self.masses.is_empty()).then(|| ModalFactors::of_masses(responses, &self.masses, modes, damping));
-                let n = self.responses.sections().len();
-                let rows: Vec<usize> =
-                    (0..4).flat_map(|q| chosen.iter().map(move |s| q * n + s)).chain(4 * n..rho.nrows()).collect();
+                let rows: Vec<usize> = self.responses.numbers_at(chosen).collect();
                 let rho = Mat::from_fn(rows.len(), modes.len(), |r, i| rho[(rows[r], i)]);
                 let mut factors = ModalFactors::of_responses(&rho, &modes.omega, damping.1);
                 // C as a matrix acts on the masses.

@@ -95,6 +95,7 @@ pub mod road;
 
 pub mod modal_bridge;
 
+pub mod coordinate;
 pub mod lane;
 
 pub mod geometry;

@@ -106,7 +106,8 @@ impl Selection {
         let count = sections.len();
         // Of a section deflection, moment and both shears: what else is looked at must not matter. On an end all.
         let own = |section: usize| {
-            let mut rows: Vec<usize> = (0..4).filter_map(|quantity| self.row(quantity * count + section)).collect();
+            let of_section = Quantity::OF_SECTIONS.map(|quantity| responses.range(quantity).start + section);
+            let mut rows: Vec<usize> = of_section.into_iter().filter_map(|response| self.row(response)).collect();
             rows.dedup();
             rows
         };

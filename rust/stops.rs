@@ -138,20 +138,20 @@ impl PassingInfluence {
 
 /// Follows axles past the marks, step by step, however they move.
 #[derive(Debug, Clone)]
-pub struct Follower {
+pub struct PassingAxles {
     to_the_right: Vec<bool>,
     /// For every axle the number of marks it has passed.
     passed: Vec<usize>,
 }
 
-impl Follower {
+impl PassingAxles {
     /// From where axles start, each in its direction.
     pub fn new(positions: &impl Positions, to_the_right: Vec<bool>, marks: &[Mark]) -> Self {
         let passed = to_the_right.iter().enumerate().map(|(axle, &right)| match positions.x(0, axle) {
             x if right => marks.partition_point(|mark| mark.x <= x),
             x => marks.len() - marks.partition_point(|mark| mark.x < x),
         });
-        Follower { passed: passed.collect(), to_the_right }
+        PassingAxles { passed: passed.collect(), to_the_right }
     }
 
     /// Whether every axle has passed every mark.

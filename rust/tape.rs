@@ -1,9 +1,9 @@
 //! Steps kept until their responses are looked at, of one crossing or of several side by side, with the largest and
 //! smallest of what they consist of.
 
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::recovery::Rows;
-use crate::step::newmark::Coordinate;
 
 /// Steps whose responses are bounded together.
 pub const CHUNK: usize = 32;

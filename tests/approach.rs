@@ -2,9 +2,9 @@
 
 use crate::problems::vehicles::half_car;
 use crate::problems::{kishan_vehicle, kishan_vehicle_with_friction};
+use spanwise::coordinate::Coordinate;
 use spanwise::damping::ModalDamping;
 use spanwise::geometry::{Geometry, Surface};
-use spanwise::step::newmark::Coordinate;
 use spanwise::step::stepper::{Scheme, State, Stepper};
 use spanwise::step::unit::{Moving, Propulsion};
 use spanwise::vehicle::Vehicle;

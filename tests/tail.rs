@@ -8,6 +8,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use spanwise::bridge::Bridge;
 use spanwise::bridge::lumping::Stations;
+use spanwise::coordinate::Coordinate;
 use spanwise::crossing::analysis::{Analysis, Preparation};
 use spanwise::crossing::cross;
 use spanwise::crossing::history::History;
@@ -26,7 +27,7 @@ use spanwise::recovery::Recovery;
 use spanwise::statics::flexibility::Flexibility;
 use spanwise::statics::influence::Quantity;
 use spanwise::step::bridge_step::ModalSolve;
-use spanwise::step::newmark::{Coordinate, Newmark};
+use spanwise::step::newmark::Newmark;
 use spanwise::step::vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};
 use spanwise::vehicle::Vehicle;
 

@@ -57,24 +57,38 @@ def uses(module: Module, text: str, known: dict[Module, Path]) -> set[Module]:
     return found
 
 
-def circle(root: Path) -> list[str]:
-    """A circle among the files, or nothing."""
+def graph(root: Path) -> dict[Module, set[Module]]:
+    """What every file takes from others."""
     known = files(root)
     # The front page names every room, and nothing takes from it.
-    graph = {
+    return {
         module: uses(module, path.read_text(encoding="utf-8"), known)
         for module, path in known.items()
         if module != ("lib",)
     }
+
+
+def whole(taken: dict[Module, set[Module]]) -> dict[Module, set[Module]]:
+    """The same of whole rooms."""
+    rooms: dict[Module, set[Module]] = {}
+    for module, others in taken.items():
+        own = module[:1]
+        rooms.setdefault(own, set()).update(other[:1] for other in others if other[:1] != own)
+    return rooms
+
+
+def circle(taken: dict[Module, set[Module]]) -> list[str]:
+    """A circle among files or rooms, or nothing."""
     try:
-        TopologicalSorter(graph).prepare()
+        TopologicalSorter(taken).prepare()
     except CycleError as error:
         return ["::".join(module) for module in error.args[1]]
     return []
 
 
-def test_no_file_depends_on_itself_by_way_of_others() -> None:
-    assert circle(ROOT) == []
+def test_no_file_and_no_room_depends_on_itself_by_way_of_others() -> None:
+    assert circle(graph(ROOT)) == []
+    assert circle(whole(graph(ROOT))) == []
 
 
 @pytest.mark.parametrize(
@@ -92,13 +106,23 @@ def test_a_circle_is_found(tmp_path: Path, back: str) -> None:
     (tmp_path / "a.rs").write_text("use crate::b::c::{self, Deep};")
     (tmp_path / "b.rs").write_text("pub mod c;")
     (tmp_path / "b" / "c.rs").write_text("pub struct Deep;")
-    assert circle(tmp_path) == []
+    assert circle(graph(tmp_path)) == []
     (tmp_path / "b" / "c.rs").write_text(back)
-    assert set(circle(tmp_path)) == {"a", "b::c"}
+    assert set(circle(graph(tmp_path))) == {"a", "b::c"}
 
 
 def test_a_child_of_its_parent_is_a_circle(tmp_path: Path) -> None:
     (tmp_path / "a").mkdir()
     (tmp_path / "a.rs").write_text("mod b;\nuse b::f;")
     (tmp_path / "a" / "b.rs").write_text("use super::Own;")
-    assert set(circle(tmp_path)) == {"a", "a::b"}
+    assert set(circle(graph(tmp_path))) == {"a", "a::b"}
+
+
+def test_a_circle_of_rooms_is_found(tmp_path: Path) -> None:
+    for room, other in (("a", "b"), ("b", "a")):
+        (tmp_path / room).mkdir()
+        (tmp_path / f"{room}.rs").write_text("pub mod deep;")
+        (tmp_path / room / "deep.rs").write_text(f"use crate::{other}::plain;")
+        (tmp_path / room / "plain.rs").write_text("")
+    assert circle(graph(tmp_path)) == []
+    assert set(circle(whole(graph(tmp_path)))) == {"a", "b"}

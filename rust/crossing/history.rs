@@ -4,12 +4,12 @@ use std::ops::{Range, RangeInclusive};
 
 use serde::{Deserialize, Serialize};
 
+use crate::coordinate::Coordinate;
 use crate::error::Error;
 use crate::extremes::interpolate;
 use crate::geometry::Geometry;
 use crate::recovery::{Place, Placed, Rows, WIDTH};
 use crate::statistics::Ride;
-use crate::step::newmark::Coordinate;
 use crate::step::stepper::State;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;

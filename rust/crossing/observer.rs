@@ -9,7 +9,7 @@ use crate::recovery::{Place, Placed, Rows};
 use crate::selection::Selection;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
-use crate::stops::{Follower, PassingInfluence, Positions, Stop};
+use crate::stops::{PassingAxles, PassingInfluence, Positions, Stop};
 use crate::tape::{BridgeFactors, Widths, write_at_rest};
 
 /// Extremes of the responses looked at, while a history grows.
@@ -19,7 +19,7 @@ pub struct Observer<'a> {
     free: &'a FreeRows,
     /// The bridge, if it is varied.
     factors: Option<BridgeFactors<f64>>,
-    follower: Option<Follower>,
+    axles: Option<PassingAxles>,
     stops: Vec<Stop>,
     /// Steps that have been looked at, the start among them.
     steps: usize,
@@ -57,7 +57,7 @@ impl<'a> Observer<'a> {
             look,
             free,
             factors,
-            follower: None,
+            axles: None,
             stops: Vec::new(),
             steps: 0,
             dynamic: nothing.clone(),
@@ -110,15 +110,15 @@ impl<'a> Observer<'a> {
     /// Takes in every stop from a step on.
     fn pass(&mut self, history: &History, from: usize) {
         let widths = self.widths(history);
-        let Observer { rows, look, factors, follower, stops, desk, .. } = self;
+        let Observer { rows, look, factors, axles, stops, desk, .. } = self;
         let Desk { moment, sides, then, then_at_rest, .. } = desk;
-        let follower = follower.get_or_insert_with(|| {
+        let axles = axles.get_or_insert_with(|| {
             let to_the_right = (0..history.axles).map(|axle| history.direction(axle) > 0.0).collect();
-            Follower::new(history, to_the_right, &look.marks)
+            PassingAxles::new(history, to_the_right, &look.marks)
         });
         let first = stops.len();
         for step in from.max(1)..self.steps {
-            follower.stops(history, step, look, stops);
+            axles.stops(history, step, look, stops);
         }
         for (number, stop) in stops.iter().enumerate().skip(first) {
             moment.fill(stop, history, rows, look);
@@ -208,8 +208,8 @@ impl Watch for Observer<'_> {
         };
         let load: f64 = history.static_loads.iter().sum();
         // One row that can still grow is enough to go on, and little work to ask: all others can wait.
-        if let (Some((row, [most, least], steps)), Some(follower)) = (self.growing, &self.follower)
-            && follower.is_past(&self.look.marks)
+        if let (Some((row, [most, least], steps)), Some(axles)) = (self.growing, &self.axles)
+            && axles.is_past(&self.look.marks)
         {
             let widths = self.widths(history);
             let Desk { then, influence, .. } = &mut self.desk;

@@ -1,18 +1,18 @@
 //! A crossing step by step: brakes, standing vehicles, ends, and what is recorded.
 
+use crate::coordinate::Coordinate;
 use crate::crossing::history::{History, VehicleColumns};
 use crate::crossing::tail::{self, Watch};
 use crate::error::Error;
-use crate::geometry::Geometry;
 use crate::geometry::free::Free;
 use crate::geometry::prescribed::Prescribed;
+use crate::geometry::{Follow, Geometry};
 use crate::modal_bridge::ModalBridge;
 use crate::passage::planned::Course;
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{MAX_STEPS, Steps};
 use crate::passage::{Braking, Direction};
-use crate::step::newmark::Coordinate;
-use crate::step::rolling::{Brakes, Follow, Rolling};
+use crate::step::rolling::{Brakes, Rolling};
 use crate::step::stepper::{Scheme, State, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vehicle_step::VehicleSolve;

@@ -4,10 +4,10 @@
 use std::sync::OnceLock;
 
 use super::table::{Below, Table};
+use crate::coordinate::Coordinate;
 use crate::geometry::{Geometry, Surface};
 use crate::lane::Lane;
 use crate::road::b_spline::weighted;
-use crate::step::newmark::Coordinate;
 use crate::step::stepper::Stepper;
 use crate::stops::Positions;
 

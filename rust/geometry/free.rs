@@ -1,9 +1,8 @@
 //! Motion of a single crossing in which vehicles roll freely: contacts go where these, or prescribed motion, have them.
 
 use super::pavement::Ground;
-use super::{Geometry, Surface};
-use crate::step::newmark::Coordinate;
-use crate::step::rolling::Follow;
+use super::{Follow, Geometry, Surface};
+use crate::coordinate::Coordinate;
 
 /// Change of an axle's position, relative to the length of the bridge, at which it counts as placed. The guess from the last
 /// accelerations is off by the cube of the step, so that this takes nothing from the order.

@@ -3,7 +3,7 @@
 
 use super::pavement::Ground;
 use super::{Geometry, Surface};
-use crate::step::newmark::Coordinate;
+use crate::coordinate::Coordinate;
 
 /// Steps of prescribed motion that are laid out at a time, so that a crossing can be ended between them.
 const LAID: usize = 64;

@@ -1,7 +1,7 @@
 //! Motion that is prescribed: how far a vehicle has come at any time, exactly.
 
+use crate::coordinate::Coordinate;
 use crate::error::{Error, finite, not_negative};
-use crate::step::newmark::Coordinate;
 
 /// Highest speed [m/s] and acceleration [m/s²] that are not taken for a slip of the pen.
 const MOST: f64 = 1e4;

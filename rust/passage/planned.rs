@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::coordinate::Coordinate;
 use crate::error::{Error, finite, not_negative, positive};
 use crate::geometry::pavement::Pavement;
 use crate::modal_bridge::ModeShapes;
@@ -10,7 +11,6 @@ use crate::passage::settings::Settings;
 use crate::passage::{Braking, Direction, Drive, Passage};
 use crate::road::datum::Datum;
 use crate::road::{Road, down_to_mm};
-use crate::step::newmark::Coordinate;
 use crate::vehicle::Vehicle;
 use crate::vehicle::equations::ContactLaw;
 

@@ -39,6 +39,10 @@ impl Quantity {
         Quantity::ClampMoment,
     ];
 
+    /// Those that each section has, and the first in that order.
+    pub const OF_SECTIONS: [Quantity; 4] =
+        [Quantity::Deflection, Quantity::Moment, Quantity::ShearLeft, Quantity::ShearRight];
+
     /// What it is called in messages and among the arguments of a bridge given by its modes.
     pub fn name(self) -> &'static str {
         match self {
@@ -171,13 +175,18 @@ impl Responses {
 
     /// The same of some of the sections only, by their numbers.
     pub fn of_sections(&self, chosen: &[usize]) -> Self {
-        let n = self.sections.len();
-        let lines = (0..4).flat_map(|quantity| chosen.iter().map(move |s| quantity * n + s)).chain(4 * n..self.len());
         Responses {
             sections: chosen.iter().map(|&s| self.sections[s]).collect(),
-            lines: lines.map(|r| self.lines[r].clone()).collect(),
+            lines: self.numbers_at(chosen).map(|r| self.lines[r].clone()).collect(),
             ..self.clone()
         }
+    }
+
+    /// Numbers of the responses at some of the sections, and of all that are not at sections.
+    pub fn numbers_at(&self, chosen: &[usize]) -> impl Iterator<Item = usize> {
+        let of_sections = Quantity::OF_SECTIONS.map(|quantity| self.range(quantity).start);
+        let at = of_sections.into_iter().flat_map(move |first| chosen.iter().map(move |s| first + s));
+        at.chain(self.range(Quantity::Reaction).start..self.len())
     }
 
     /// Nodes of the sections.

@@ -6,7 +6,7 @@
 use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
 
-use super::newmark::Coordinate;
+use crate::coordinate::Coordinate;
 use crate::damping::ModalDamping;
 use crate::lane::Lane;
 use crate::lane::gather::gather;

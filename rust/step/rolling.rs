@@ -2,27 +2,16 @@
 //!
 //! Only single crossings do so, hence numbers of one sample and not lanes.
 
-use super::newmark::Coordinate;
 use super::sizes::Desk;
 use super::stepper::{State, Stepper, Unsettled};
 use super::unit::{Propulsion, Unit};
 use super::vehicle_step::VehicleSolve;
-use crate::geometry::Geometry;
+use crate::coordinate::Coordinate;
+use crate::geometry::{Follow, Geometry};
 use crate::lane::Lane;
 
 /// Most passes in which axle positions and surge follow the corrected state; one or two are usual.
 const PASSES: usize = 50;
-
-/// Contacts that can follow their vehicles.
-pub trait Follow: Geometry<f64> {
-    /// Puts a contact where its vehicle has it, in a new step or in another pass of the same; `motion` counts from the end
-    /// of the bridge at which the vehicle enters, in its own direction. Says whether it had still to move; if not, nothing
-    /// changes, to the bit.
-    fn follow(&mut self, contact: usize, motion: Coordinate<f64>, new_step: bool) -> bool;
-
-    /// Holds a contact where it is, its vehicle having come to rest.
-    fn stop(&mut self, contact: usize);
-}
 
 /// How hard a vehicle brakes.
 #[derive(Debug, Clone, Copy, PartialEq)]

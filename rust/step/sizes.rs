@@ -3,7 +3,7 @@
 
 use super::contact::{HELD, Prepared};
 use super::coupled_forces::Known;
-use super::newmark::Coordinate;
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 
 /// What decides which way a step goes. It is passed by value: where a caller gives it in literals, every loop below runs

@@ -1,11 +1,11 @@
 //! The first instant: vehicles in equilibrium on the road where they stand, and what moves them out of it.
 
 use super::compliance::Interaction;
-use super::newmark::Coordinate;
 use super::sizes::{Desk, Form};
 use super::stand::Stood;
 use super::stepper::{State, Stepper, Unsettled};
 use super::unit::Unit;
+use crate::coordinate::Coordinate;
 use crate::geometry::Geometry;
 use crate::lane::Lane;
 

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use super::newmark::{Coordinate, Newmark};
+use super::newmark::Newmark;
 use super::sizes::Form;
 use super::stand::Stand;
 use super::vehicle_step::VehicleSolve;
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::lane::gather::{Gather, gather};
 use crate::vehicle::equations::Assembly;

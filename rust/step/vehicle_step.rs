@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::newmark::{Coordinate, Newmark};
+use super::newmark::Newmark;
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::lane::gather::gather;
 use crate::vehicle::dense;

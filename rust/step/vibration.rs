@@ -19,7 +19,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::bridge_step::ModalSolve;
-use super::newmark::{Coordinate, Newmark};
+use super::newmark::Newmark;
+use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 
 /// Steps from one look whether the tail may end to the next; the first is when the last vehicle has left.
