@@ -6,19 +6,19 @@ mod problems;
 use criterion::{Criterion, criterion_group, criterion_main};
 use problems::vehicles::{articulated, half_car};
 use problems::{kishan_bridge, kishan_vehicle};
-use spanwise::crossing::analysis::Preparation;
+use spanwise::crossing::History;
+use spanwise::crossing::Observer;
+use spanwise::crossing::Preparation;
+use spanwise::crossing::Watch;
 use spanwise::crossing::cross;
-use spanwise::crossing::history::History;
-use spanwise::crossing::observer::Observer;
-use spanwise::crossing::tail::Watch;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::passage::{Direction, Drive, Passage};
-use spanwise::statics::flexibility::Flexibility;
-use spanwise::step::vibration::Reach;
+use spanwise::statics::Flexibility;
+use spanwise::step::Reach;
 use spanwise::stop_token::StopToken;
-use spanwise::vehicle::body::Friction;
+use spanwise::vehicle::Friction;
 
 /// Looks at nothing: steps alone.
 struct Blind;

@@ -11,11 +11,11 @@ use std::time::{Duration, Instant};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group};
 use problems::ensemble::{SEED, headline, isas, one, run, samples, synthesis};
 use pulp::{Simd, WithSimd};
-use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::Drawing;
 use spanwise::lane::Lane;
-use spanwise::lane::dispatch::{InLanes, with};
+use spanwise::lane::{InLanes, with};
 use spanwise::lane::{Lanes, Work};
-use spanwise::road::random::Synthesis;
+use spanwise::road::Synthesis;
 
 /// Crossings per measurement.
 const CROSSINGS: usize = 256;

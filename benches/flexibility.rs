@@ -5,7 +5,7 @@ mod problems;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use problems::two_spans;
-use spanwise::statics::flexibility::{Flexibility, Structure};
+use spanwise::statics::{Flexibility, Structure};
 
 fn flexibility(c: &mut Criterion) {
     let mut group = c.benchmark_group("flexibility");

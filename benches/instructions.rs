@@ -14,14 +14,14 @@ use std::process::ExitCode;
 use problems::ensemble::{ALL, SEED, headline, isas, kishan_analysis, run, samples, study_of, synthesis};
 use problems::vehicles::half_car;
 use problems::{kishan_settings, kishan_vehicle};
+use spanwise::ensemble::Samples;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::sample::Samples;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::vehicle::body::Friction;
+use spanwise::vehicle::Friction;
 
 /// What the gate takes for: this processor cannot.
 const ABSENT: u8 = 3;

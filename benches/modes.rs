@@ -6,7 +6,7 @@ mod problems;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use problems::two_spans;
 use spanwise::modes::Modes;
-use spanwise::statics::flexibility::Flexibility;
+use spanwise::statics::Flexibility;
 
 fn modes(c: &mut Criterion) {
     let mut group = c.benchmark_group("modes");

@@ -4,12 +4,12 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::Drawing;
 use spanwise::lane::Lanes;
-use spanwise::lane::dispatch::{InLanes, Isa, with};
-use spanwise::road::patch::Patch;
-use spanwise::road::random::Synthesis;
-use spanwise::road::spectrum::Spectrum;
+use spanwise::lane::{InLanes, Isa, with};
+use spanwise::road::Patch;
+use spanwise::road::Spectrum;
+use spanwise::road::Synthesis;
 
 /// Draws the roads of so many blocks, one after the other.
 struct Draw<'a> {

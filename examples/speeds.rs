@@ -1,17 +1,17 @@
 //! Impact factors of the midspan moment of a simple span under a lorry, speed by speed: `cargo run --release --example speeds`.
 
 use spanwise::bridge::Layout;
-use spanwise::bridge::lumping::Stations;
-use spanwise::crossing::analysis::Preparation;
+use spanwise::bridge::Stations;
+use spanwise::crossing::Preparation;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::passage::settings::Settings;
-use spanwise::statics::flexibility::Flexibility;
-use spanwise::statics::influence::Quantity;
+use spanwise::passage::Settings;
+use spanwise::statics::Flexibility;
+use spanwise::statics::Quantity;
 use spanwise::stop_token::StopToken;
+use spanwise::vehicle::Axle;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
 
 fn main() -> Result<(), Error> {
     let stop = StopToken::NEVER;

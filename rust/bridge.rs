@@ -3,17 +3,22 @@
 //! EI and mass are a [`distribution`] along it, each [`support`] holds it, its mass is lumped at stations
 //! ([`lumping`]), and every function along it is made of [`cubics`].
 
-pub mod cubics;
-pub mod distribution;
-pub mod lumping;
-pub mod support;
+pub(crate) mod cubics;
+pub(crate) mod distribution;
+pub(crate) mod lumping;
+pub(crate) mod support;
+
+pub use cubics::{Line, MAX_STATIONS, Mesh};
+pub use distribution::{Along, TAPER_PIECES};
+pub use lumping::Stations;
+pub use support::{Fixity, Support};
 
 use crate::error::{Error, finite, positive};
 use crate::float_mode::Standard;
-use cubics::{COINCIDENT, MAX_STATIONS};
-use distribution::{Along, Distribution, Sign};
-use lumping::{Station, Stations, equal_shares, too_many, tributary_shares};
-use support::{Fixity, Support, checked_supports, on_the_bridge};
+use cubics::COINCIDENT;
+use distribution::{Distribution, Sign};
+use lumping::{Station, equal_shares, too_many, tributary_shares};
+use support::{checked_supports, on_the_bridge};
 
 /// Everything that makes a bridge, as given.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,15 +4,19 @@
 //! [`history`], and the [`tail`] goes on until nothing larger can come. The [`observer`] looks for the extremes of every
 //! response, and the [`envelope`] has them and the impact factors.
 
-pub mod analysis;
-pub mod envelope;
-pub mod history;
-pub mod observer;
-pub mod tail;
-pub mod time_loop;
+pub(crate) mod analysis;
+pub(crate) mod envelope;
+pub(crate) mod history;
+pub(crate) mod observer;
+pub(crate) mod tail;
+pub(crate) mod time_loop;
 
-use crate::crossing::history::History;
-use crate::crossing::tail::Watch;
+pub use analysis::{Analysis, Outcome, Preparation};
+pub use envelope::{Envelope, Extreme, Extremes, Ratio, Sense, axle_loads};
+pub use history::{History, LiftOff};
+pub use observer::Observer;
+pub use tail::Watch;
+
 use crate::crossing::time_loop::TimeLoop;
 use crate::error::Error;
 use crate::geometry::free::Free;

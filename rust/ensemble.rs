@@ -12,21 +12,27 @@
 //! A sample's result is a function of the study, the seed and its own number, to the bit: not of the number of threads, of
 //! the width of the vectors, or of its neighbours.
 
-pub mod block;
-pub mod bounds;
-pub mod clock;
-pub mod results;
-pub mod room;
-pub mod run;
-pub mod sample;
-pub mod shelf;
-pub mod side_by_side;
-pub mod single;
-pub mod study;
-pub mod table;
-pub mod tabulated;
-pub mod varied;
-pub mod workers;
+pub(crate) mod block;
+pub(crate) mod bounds;
+pub(crate) mod clock;
+pub(crate) mod results;
+pub(crate) mod room;
+pub(crate) mod run;
+pub(crate) mod sample;
+pub(crate) mod shelf;
+pub(crate) mod side_by_side;
+pub(crate) mod single;
+pub(crate) mod study;
+pub(crate) mod table;
+pub(crate) mod tabulated;
+pub(crate) mod varied;
+pub(crate) mod workers;
+
+pub use block::Drawing;
+pub use results::{Column, Failure, Record, Results, decoded};
+pub use sample::{Factors, Parameter, Samples};
+pub use side_by_side::Task;
+pub use tabulated::Shared;
 
 pub use run::Run;
 pub use study::{Kind, March, Plan, Study};

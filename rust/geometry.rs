@@ -3,9 +3,9 @@
 //! In a single crossing motion is [`prescribed`], or [`free`] where a vehicle rolls, on the [`pavement`] of each
 //! vehicle; samples that move alike share a table ([`crate::ensemble::tabulated`]).
 
-pub mod free;
-pub mod pavement;
-pub mod prescribed;
+pub(crate) mod free;
+pub(crate) mod pavement;
+pub(crate) mod prescribed;
 
 use crate::coordinate::Coordinate;
 use crate::lane::Lane;

@@ -4,9 +4,12 @@
 //! What a crossing needs is lines along the path of the wheels, of the modes and of the responses. A described bridge
 //! integrates them; here they come from another program or from a table, and the rest is the same.
 
-pub mod by_flexibility;
-pub mod by_modes;
-pub mod sides;
+pub(crate) mod by_flexibility;
+pub(crate) mod by_modes;
+pub(crate) mod sides;
+
+pub use by_flexibility::ByFlexibility;
+pub use by_modes::{ByModes, GivenLines, TwoSided};
 
 use faer::Mat;
 

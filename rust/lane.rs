@@ -3,17 +3,19 @@
 //! [`dispatch`] chooses the instruction set and with it how many; what any processor can do is [`wide`]. Vehicles,
 //! bridges and contacts of single samples become those of all lanes by [`gather`].
 
-pub mod bits;
-pub mod dispatch;
-pub mod gather;
+pub(crate) mod bits;
+pub(crate) mod dispatch;
+pub(crate) mod gather;
 mod pack;
-pub mod wide;
+pub(crate) mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
+pub use bits::Bits;
+pub use dispatch::{InLanes, Isa, with};
+pub use wide::{Wide, WideBits};
 
-use bits::Bits;
+use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// One number per sample. All operations are exact IEEE ones, element by element, so that a sample's bits depend
 /// neither on its neighbours nor on the width.

@@ -6,32 +6,34 @@
 //! worked out for a described bridge can be [`imported`] instead. Either way it becomes a [`modal_bridge`], in whose
 //! few coordinates A it moves:
 //!
-//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::bridge_step`], together with the vehicles in [`step::stepper`]).
+//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::ModalSolve`], together with the vehicles in [`step::Stepper`]).
 //!
 //! A [`vehicle`] in its own coordinates presses on it through its contacts with the axle loads P, by the contact law of
-//! tyre, suspension, friction and lift-off ([`step::contact`]), on a [`road`]. One [`step`] moves them all together, in
+//! tyre, suspension, friction and lift-off ([`step::Contact`]), on a [`road`]. One [`step`] moves them all together, in
 //! [`lane`]s: of one crossing or of several samples side by side. Where the contacts are is a matter of [`geometry`],
 //! and so of how the vehicle makes its [`passage`]. From A and P follow all responses by [`force_summation`], with
 //! inertia and damping forces from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one
-//! row each ([`recovery`]), R = ρ·A + Σ g(x) P. A [`crossing`] goes through time step by step, its tail included, and
-//! is searched for the extremes of every response ([`crossing::extremes`]); an [`ensemble`] is many of them, each the
-//! same to the bit as alone.
+//! row each ([`recovery`]), R = ρ·A + Σ g(x) P.
+//!
+//! Those that are looked at ([`selection`]) are searched for their [`extremes`], at the steps, kept on a [`tape`], and at
+//! the [`stops`] between them at which an axle passes a section; [`statistics`] tell of the ride. A [`crossing`] goes
+//! through time step by step, its tail included, and an [`ensemble`] is many of them, each the same to the bit as alone.
 //!
 //! # A crossing, and many
 //!
 //! ```
 //! use std::sync::Arc;
 //!
-//! use spanwise::bridge::{Layout, lumping::Stations};
-//! use spanwise::crossing::analysis::Preparation;
+//! use spanwise::bridge::{Layout, Stations};
+//! use spanwise::crossing::Preparation;
 //! use spanwise::damping::Damping;
-//! use spanwise::ensemble::{Plan, Progress, Workers, results::Column, sample::Samples};
+//! use spanwise::ensemble::{Column, Plan, Progress, Samples, Workers};
 //! use spanwise::modes::Modes;
-//! use spanwise::passage::{Passage, settings::Settings};
-//! use spanwise::road::{patch::Patch, random::Synthesis, spectrum::Spectrum};
-//! use spanwise::statics::{flexibility::Flexibility, influence::Quantity};
+//! use spanwise::passage::{Passage, Settings};
+//! use spanwise::road::{Patch, Spectrum, Synthesis};
+//! use spanwise::statics::{Flexibility, Quantity};
 //! use spanwise::stop_token::StopToken;
-//! use spanwise::vehicle::{Vehicle, body::Axle};
+//! use spanwise::vehicle::{Axle, Vehicle};
 //!
 //! // 20 m, EI = 6 GN m², 8 t/m, its mass in eight places; and a lorry of 20 t.
 //! let bridge = Layout::of_spans(&[20.0], 6e9, 8e3)?.stations(Stations::PerSpan(vec![8])).build()?;
@@ -67,7 +69,7 @@
 //! # Who does the algebra
 //!
 //! faer where matrices grow with the bridge (flexibility, redundant reactions, modes) or with a large vehicle; nalgebra for
-//! the small matrices of a vehicle ([`vehicle::dense`]). The step does its own: it runs in lanes whose bits must depend
+//! the small matrices of a vehicle (`vehicle::dense`). The step does its own: it runs in lanes whose bits must depend
 //! neither on their neighbours nor on the processor, on sizes of two to five that a library would only hide from the
 //! compiler. Where types of theirs appear in these pages they are [`faer`] and [`nalgebra`] as re-exported here.
 

@@ -3,10 +3,13 @@
 //! What all vehicles of a crossing have in common are its [`settings`]; with them a passage is [`planned`] as a
 //! [`motion`], and the crossing divided into steps ([`step_length`]).
 
-pub mod motion;
-pub mod planned;
-pub mod settings;
-pub mod step_length;
+pub(crate) mod motion;
+pub(crate) mod planned;
+pub(crate) mod settings;
+pub(crate) mod step_length;
+
+pub use motion::Motion;
+pub use settings::{Settings, Tail};
 
 use std::sync::Arc;
 
@@ -70,9 +73,9 @@ impl Direction {
 pub struct Passage {
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// Speed at the start [m/s], if not that of the [`Settings`](settings::Settings).
+    /// Speed at the start [m/s], if not that of the [`Settings`].
     pub speed: Option<f64>,
-    /// How it moves, if not as the [`Settings`](settings::Settings) say.
+    /// How it moves, if not as the [`Settings`] say.
     pub drive: Option<Drive>,
     /// Where it goes.
     pub direction: Direction,
@@ -80,7 +83,7 @@ pub struct Passage {
     pub entry: f64,
     /// Vehicles of the same lane must not overlap.
     pub lane: i64,
-    /// The road under it, if not that of the [`Settings`](settings::Settings).
+    /// The road under it, if not that of the [`Settings`].
     pub road: Option<Arc<Road>>,
 }
 

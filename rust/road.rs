@@ -6,17 +6,26 @@
 //! its way. Random roads are made by [`philox`], [`turn`], [`fft`] and [`b_spline`], with the same bits on every
 //! machine.
 
-pub mod b_spline;
-pub mod datum;
-pub mod feature;
-pub mod fft;
+pub(crate) mod b_spline;
+pub(crate) mod datum;
+pub(crate) mod feature;
+pub(crate) mod fft;
 pub mod golden_car;
-pub mod patch;
-pub mod philox;
-pub mod point;
-pub mod profile;
-pub mod random;
-pub mod spectrum;
+pub(crate) mod patch;
+pub(crate) mod philox;
+pub(crate) mod point;
+pub(crate) mod profile;
+pub(crate) mod random;
+pub(crate) mod spectrum;
+
+pub use feature::Feature;
+pub use fft::InverseFft;
+pub use patch::Patch;
+pub use philox::{philox4x32, philox4x32_lanes};
+pub use point::Point;
+pub use profile::Profile;
+pub use random::Synthesis;
+pub use spectrum::{Class, Spectrum};
 pub mod turn;
 
 use std::sync::Arc;
@@ -24,10 +33,6 @@ use std::sync::Arc;
 use crate::error::{Error, finite};
 use crate::stop_token::StopToken;
 use datum::Datum;
-use feature::Feature;
-use patch::Patch;
-use point::Point;
-use profile::Profile;
 use random::Random;
 
 /// Part of the highest wave number of samples, half a wave each, up to which they are taken at their word.

@@ -3,6 +3,10 @@
 //! Shapes are integrated and made compatible in [`flexibility`]; by reciprocity they are the lines of [`influence`],
 //! and under a [`settlement`] of the supports the state of the bridge.
 
-pub mod flexibility;
+pub(crate) mod flexibility;
 pub mod influence;
-pub mod settlement;
+pub(crate) mod settlement;
+
+pub use flexibility::{Action, Flexibility, Restraint, Structure};
+pub use influence::{Quantity, Responses};
+pub use settlement::Settled;

@@ -7,17 +7,26 @@
 //! in [`rolling`] go where the step takes them. Where a step's [`sizes`] are known, the compiler is told. Once all have
 //! left there is free [`vibration`].
 
-pub mod bridge_step;
-pub mod compliance;
-pub mod contact;
-pub mod coupled_forces;
-pub mod friction;
-pub mod newmark;
-pub mod rolling;
-pub mod sizes;
-pub mod stand;
-pub mod start;
-pub mod stepper;
-pub mod unit;
-pub mod vehicle_step;
-pub mod vibration;
+pub(crate) mod bridge_step;
+pub(crate) mod compliance;
+pub(crate) mod contact;
+pub(crate) mod coupled_forces;
+pub(crate) mod friction;
+pub(crate) mod newmark;
+pub(crate) mod rolling;
+pub(crate) mod sizes;
+pub(crate) mod stand;
+pub(crate) mod start;
+pub(crate) mod stepper;
+pub(crate) mod unit;
+pub(crate) mod vehicle_step;
+pub(crate) mod vibration;
+
+pub use bridge_step::ModalSolve;
+pub use contact::{Contact, HELD, Prepared};
+pub use coupled_forces::Elements;
+pub use friction::{Law, Stroke};
+pub use newmark::Newmark;
+pub use stepper::{Scheme, State, Stepper};
+pub use unit::{Moving, Propulsion};
+pub use vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};

@@ -3,14 +3,16 @@
 //! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
 //! The parts are in [`body`], the matrices made of them in [`equations`].
 
-pub mod body;
-pub mod dense;
-pub mod equations;
+pub(crate) mod body;
+pub(crate) mod dense;
+pub(crate) mod equations;
+
+pub use body::{Axle, Body, BuildUp, Coupling, Friction, STICK, Suspension};
+pub use equations::{Assembly, ContactLaw, ContactPoint};
 
 use crate::error::{Error, finite, not_negative, positive};
 use crate::float_mode::Standard;
-use crate::vehicle::body::{Axle, Body, BuildUp, Coupling, Friction, Suspension};
-use crate::vehicle::equations::{Assembly, ContactLaw, front_first, positions, prefix};
+use crate::vehicle::equations::{front_first, positions, prefix};
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;

@@ -3,9 +3,9 @@
 use crate::problems::*;
 use crate::problems::{beam, continuous};
 use spanwise::bridge::Bridge;
-use spanwise::bridge::cubics::MAX_STATIONS;
-use spanwise::bridge::lumping::Stations;
-use spanwise::bridge::support::{Fixity, Support};
+use spanwise::bridge::MAX_STATIONS;
+use spanwise::bridge::Stations;
+use spanwise::bridge::{Fixity, Support};
 use spanwise::error::Error;
 
 /// Sums and positions to rounding, relative to the whole.

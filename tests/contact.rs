@@ -6,12 +6,12 @@ use faer::linalg::solvers::Solve;
 use nalgebra::DVector;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use spanwise::step::contact::{Contact, HELD, Prepared};
-use spanwise::step::coupled_forces::Elements;
-use spanwise::step::friction::Stroke;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
-use spanwise::vehicle::equations::{ContactLaw, ContactPoint};
+use spanwise::step::Elements;
+use spanwise::step::Stroke;
+use spanwise::step::{Contact, HELD, Prepared};
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
+use spanwise::vehicle::{ContactLaw, ContactPoint};
 
 /// Bisection and closed form agree to this fraction of the static load.
 const BISECTED: f64 = 1e-9;

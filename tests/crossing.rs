@@ -3,14 +3,14 @@
 use crate::problems::*;
 use crate::problems::{beam, continuous};
 use faer::Mat;
-use spanwise::bridge::lumping::Stations;
-use spanwise::crossing::history::History;
+use spanwise::bridge::Stations;
+use spanwise::crossing::History;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::passage::Drive;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
 use spanwise::stop_token::StopToken;
 use spanwise::vehicle::Vehicle;
 
@@ -194,10 +194,9 @@ fn the_tail_adds_to_the_extremes() {
         let rear = none.rows().last().unwrap().positions[1];
         assert!((rear - bridge.length()).abs() < 1e-9, "{drive:?} ends with the last axle at {rear} m");
         let [a, b] = [&none, &long].map(|run| &run.outcome.envelope.dynamic);
-        let pairs =
-            |list: fn(&spanwise::crossing::envelope::Extremes) -> &Vec<spanwise::crossing::envelope::Extreme>| {
-                list(a).iter().zip(list(b)).map(|(a, b)| b.value - a.value).collect::<Vec<_>>()
-            };
+        let pairs = |list: fn(&spanwise::crossing::Extremes) -> &Vec<spanwise::crossing::Extreme>| {
+            list(a).iter().zip(list(b)).map(|(a, b)| b.value - a.value).collect::<Vec<_>>()
+        };
         let (max, min) = (pairs(|e| &e.max), pairs(|e| &e.min));
         let rounding = 1e-9 * a.max.iter().fold(0.0_f64, |m, e| m.max(e.value));
         assert!(max.iter().all(|&d| d >= -rounding) && min.iter().all(|&d| d <= rounding), "{max:?} {min:?}");

@@ -7,19 +7,19 @@ use std::sync::Arc;
 use crate::problems::ensemble::*;
 use crate::problems::vehicles::half_car;
 use crate::problems::{PINNED, kishan_vehicle, observed_order, sprung_mass};
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
+use spanwise::ensemble::Samples;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::results::{Column, decoded};
-use spanwise::ensemble::sample::Samples;
+use spanwise::ensemble::{Column, decoded};
 use spanwise::extremes::Instant;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::statics::influence::Quantity;
-use spanwise::vehicle::body::Friction;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Friction;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;
@@ -28,7 +28,7 @@ const ORDER_MARGIN: f64 = 0.1;
 const SPAN: f64 = 24.0;
 
 /// Simple span of 24 m, seen where no step of a whole fraction of the span ends.
-fn analysis(sections: usize, damping: f64) -> Arc<spanwise::crossing::analysis::Analysis> {
+fn analysis(sections: usize, damping: f64) -> Arc<spanwise::crossing::Analysis> {
     let stations = Stations::PerSpan(vec![11]);
     let bridge = continuous(&[SPAN], [PINNED; 2], &[4e9], &[8e3], &stations, &[]).unwrap();
     let sections: Vec<f64> = (1..=sections).map(|i| SPAN * i as f64 / (sections + 1) as f64 + 0.0137).collect();

@@ -4,13 +4,13 @@ use crate::problems::ensemble::study_of;
 use crate::problems::ensemble::*;
 use crate::problems::kishan_vehicle;
 use crate::problems::vehicles::{half_car, leaf};
-use spanwise::ensemble::results::{Failure, Results};
-use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Failure, Results};
 use spanwise::ensemble::{Progress, Run, Study, Workers};
 use spanwise::error::Error;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::vehicle::Vehicle;
 

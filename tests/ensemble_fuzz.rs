@@ -10,20 +10,20 @@ use crate::problems::{CLAMPED, PINNED, spread};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
-use spanwise::ensemble::results::{Column, decoded};
-use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Column, decoded};
+use spanwise::ensemble::{Factors, Parameter, Samples};
 use spanwise::extremes::Instant;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
 
 prop_compose! {
     fn any_bridge()(

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::process::Command;
 
 use crate::problems::ensemble::{headline, run, samples};
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 
 /// Products of whole vectors in the steps and in the recovery, at least; with AVX2 each has some eight hundred.
 const PRODUCTS: usize = 300;

@@ -8,20 +8,20 @@ use std::sync::Arc;
 use crate::problems::ensemble::*;
 use crate::problems::vehicles::{articulated, half_car, leaf};
 use crate::problems::{PINNED, kishan_vehicle, largest_magnitude, spread};
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Run;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::results::{Column, Results};
-use spanwise::ensemble::sample::{Factors, Parameter, Samples};
-use spanwise::lane::dispatch::Isa;
+use spanwise::ensemble::{Column, Results};
+use spanwise::ensemble::{Factors, Parameter, Samples};
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
 
 /// Sums of some thousand numbers in another order, relative.
 const SUMMED: f64 = 1e-9;
@@ -141,7 +141,7 @@ fn heavier(mass: f64) -> Vehicle {
 }
 
 /// Two spans whose EI is `stiffer` times as large, damped by ratio to critical.
-fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::crossing::analysis::Analysis> {
+fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::crossing::Analysis> {
     let stations = Stations::PerSpan(vec![4, 5]);
     let bridge = continuous(&[14.0, 20.0], [PINNED; 2], &[2.4e9 * stiffer], &[7e3], &stations, &[]).unwrap();
     analysis_of(&bridge, 4, &Damping::Ratios(vec![ratio]), &[], recovery)
@@ -151,7 +151,7 @@ fn stiffer(stiffer: f64, ratio: f64, recovery: Recovery) -> Arc<spanwise::crossi
 #[test]
 fn factors_are_those_of_vehicles_and_bridges_built_with_them() {
     let settings = Settings { approach: 10.0, tail: Tail::Fixed(0.2), ..Settings::at_speed(20.0) };
-    let made = |analysis: Arc<spanwise::crossing::analysis::Analysis>, vehicle: Vehicle| {
+    let made = |analysis: Arc<spanwise::crossing::Analysis>, vehicle: Vehicle| {
         let own = Some((synthesis(), SEED));
         study_of(analysis, vec![vec![Passage::of(vehicle)]], settings.clone(), own, Some(0.02), &ALL).unwrap()
     };

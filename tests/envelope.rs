@@ -2,10 +2,10 @@
 
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::crossing::envelope::{Envelope, Extreme, Extremes, Ratio, Sense};
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::crossing::{Envelope, Extreme, Extremes, Ratio, Sense};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
 use spanwise::stop_token::StopToken;
 
 /// Two evaluations of one response, relative to its largest value.

@@ -4,9 +4,9 @@ use crate::problems::{all_arrangements, arrangements, elements, pinned, points};
 use crate::problems::{clamped, kishan_bridge, largest_magnitude};
 use faer::Mat;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
-use spanwise::bridge::support::Support;
-use spanwise::statics::flexibility::{Action, Flexibility, Structure};
+use spanwise::bridge::Stations;
+use spanwise::bridge::Support;
+use spanwise::statics::{Action, Flexibility, Structure};
 
 /// Closed forms and symmetry hold to rounding, relative to the largest number involved.
 const ROUNDING: f64 = 1e-12;

@@ -12,19 +12,19 @@ use std::sync::Arc;
 
 use crate::problems::ensemble::*;
 use crate::problems::{FOOT, PINNED, kishan_vehicle};
-use spanwise::bridge::lumping::Stations;
-use spanwise::crossing::analysis::Analysis;
+use spanwise::bridge::Stations;
+use spanwise::crossing::Analysis;
 use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::float_mode::Standard;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Body;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Body;
 
 /// As a thread starts.
 const STANDARD: u32 = 0x1F80;

@@ -3,10 +3,10 @@
 use crate::problems::continuous;
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::bridge::Stations;
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
 
 /// Two evaluations of one shear, relative to its largest value.
 const ROUNDING: f64 = 1e-10;

@@ -1,12 +1,12 @@
 //! Friction in the suspensions: its two limits, its bound, and the state it starts in.
 
 use crate::problems::*;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
 
 /// Two descriptions of the same vehicle, relative to the largest value.
 const ROUNDING: f64 = 1e-9;

@@ -5,11 +5,11 @@ use crate::problems::answers::{MovingForce, moving_forces};
 use crate::problems::continuous;
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
 
 /// Half a unit of the last digit of the table is 5e-5; the rest is for the steps, the stations and the modes left out.
 const AMPLIFICATION: f64 = 5e-4;

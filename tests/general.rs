@@ -1,15 +1,15 @@
 //! Springs, hinges and EI that varies against closed forms and limits; mechanisms; settlements.
 
 use crate::problems::*;
-use spanwise::bridge::distribution::{Along, TAPER_PIECES};
-use spanwise::bridge::lumping::Stations;
-use spanwise::bridge::support::Support;
+use spanwise::bridge::Stations;
+use spanwise::bridge::Support;
+use spanwise::bridge::{Along, TAPER_PIECES};
 use spanwise::bridge::{Bridge, Layout};
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::statics::flexibility::{Action, Flexibility, Structure};
+use spanwise::statics::Settled;
 use spanwise::statics::influence;
-use spanwise::statics::settlement::Settled;
+use spanwise::statics::{Action, Flexibility, Structure};
 
 /// A few roundings of a closed form.
 const ROUNDING: f64 = 1e-11;

@@ -2,15 +2,16 @@
 
 use faer::Mat;
 use spanwise::bridge::Bridge;
-use spanwise::crossing::analysis::{Analysis, Preparation};
+use spanwise::crossing::{Analysis, Preparation};
 use spanwise::damping::Damping;
+use spanwise::imported::ByFlexibility;
 use spanwise::imported::Given;
-use spanwise::imported::by_flexibility::ByFlexibility;
-use spanwise::imported::by_modes::{ByModes, GivenLines, TwoSided};
+use spanwise::imported::{ByModes, GivenLines, TwoSided};
 use spanwise::modes::Modes;
-use spanwise::passage::settings::Settings;
-use spanwise::statics::flexibility::{Action, Flexibility, Structure};
-use spanwise::statics::influence::{self, Quantity};
+use spanwise::passage::Settings;
+use spanwise::statics::Quantity;
+use spanwise::statics::influence::{self};
+use spanwise::statics::{Action, Flexibility, Structure};
 use spanwise::stop_token::StopToken;
 
 use crate::problems::{kishan_vehicle, pinned, two_spans};
@@ -145,7 +146,7 @@ fn what_is_given_wrongly_is_named() {
                 [crate::problems::PINNED; 2],
                 &[2e9],
                 &[6e3],
-                &spanwise::bridge::lumping::Stations::At(vec![5.0, 10.0, 15.0]),
+                &spanwise::bridge::Stations::At(vec![5.0, 10.0, 15.0]),
                 &[],
             );
             let flexibility = Flexibility::new(&bridge.unwrap(), &[]).unwrap();

@@ -3,9 +3,10 @@
 use crate::problems::elements::{self, Solved};
 use crate::problems::{all_arrangements, mirrored, more_points, points};
 use spanwise::bridge::Bridge;
-use spanwise::bridge::cubics::{Line, Mesh};
-use spanwise::statics::flexibility::{Flexibility, Restraint, Structure};
-use spanwise::statics::influence::{self, Quantity, Responses};
+use spanwise::bridge::{Line, Mesh};
+use spanwise::statics::influence::{self};
+use spanwise::statics::{Flexibility, Restraint, Structure};
+use spanwise::statics::{Quantity, Responses};
 use spanwise::stop_token::StopToken;
 
 /// Two routes to one number, the elements' the worse conditioned one, relative to the largest of its kind.

@@ -3,10 +3,10 @@
 use std::marker::PhantomData;
 
 use spanwise::extremes::Peaks;
+use spanwise::lane::Bits;
 use spanwise::lane::Lane;
-use spanwise::lane::bits::Bits;
-use spanwise::lane::dispatch::{InLanes, Isa, with};
-use spanwise::lane::wide::Wide;
+use spanwise::lane::Wide;
+use spanwise::lane::{InLanes, Isa, with};
 use spanwise::lane::{Lanes, Work};
 
 /// All that can go wrong, and something that does not.

@@ -9,19 +9,19 @@ use crate::problems::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
-use spanwise::crossing::history::LiftOff;
+use spanwise::bridge::Stations;
+use spanwise::crossing::LiftOff;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::passage::Drive;
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
+use spanwise::road::Patch;
 use spanwise::road::Road;
-use spanwise::road::patch::Patch;
-use spanwise::road::random::Synthesis;
-use spanwise::road::spectrum::{Class, Spectrum};
+use spanwise::road::Synthesis;
+use spanwise::road::{Class, Spectrum};
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Friction;
 
 /// Balances of forces at an instant, to rounding of what the steps leave, relative to the weight.
 const BALANCE: f64 = 1e-9;

@@ -8,17 +8,17 @@ use crate::problems::mechanics::{motion, profile, run_all};
 use crate::problems::vehicles::{articulated, elastic, half_car, leaf};
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
-use spanwise::passage::settings::{Settings, Tail};
 use spanwise::passage::{Braking, Direction, Drive, Passage};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, Superposition};
 use spanwise::road::Road;
-use spanwise::statics::influence::Quantity;
-use spanwise::step::friction::{Law, Stroke};
+use spanwise::statics::Quantity;
+use spanwise::step::{Law, Stroke};
+use spanwise::vehicle::Axle;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::{BuildUp, Friction};
+use spanwise::vehicle::{BuildUp, Friction};
 
 /// Two descriptions of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;

@@ -3,12 +3,12 @@
 use crate::problems::answers::uniform_bridges;
 use crate::problems::beam;
 use crate::problems::*;
-use spanwise::bridge::distribution::Along;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Along;
+use spanwise::bridge::Stations;
 use spanwise::bridge::{Bridge, Layout};
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::statics::flexibility::{Flexibility, Structure};
+use spanwise::statics::{Flexibility, Structure};
 
 /// Demanded of every mode: residual, orthogonality, relative to one.
 const ROUNDING: f64 = 1e-10;

@@ -1,6 +1,6 @@
 //! Prescribed motion: way, speed and acceleration at any time, and when a place is reached.
 
-use spanwise::passage::motion::Motion;
+use spanwise::passage::Motion;
 
 /// Way by Simpson's rule from the speeds, exact for speeds linear in time.
 fn way(motion: &Motion, [from, to]: [f64; 2]) -> f64 {

@@ -5,15 +5,15 @@ use crate::problems::mechanics::{Budget, motion, orders, profile, run_all, state
 use crate::problems::vehicles::{articulated, elastic, half_car, hs20};
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
-use spanwise::passage::settings::{Settings, Tail};
 use spanwise::passage::{Braking, Direction, Drive, Passage};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Friction;
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;

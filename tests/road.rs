@@ -4,24 +4,24 @@ use spanwise::stop_token::StopToken;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
-use spanwise::ensemble::block::Drawing;
+use spanwise::ensemble::Drawing;
 use spanwise::error::Error;
+use spanwise::lane::Bits;
 use spanwise::lane::Lane;
 use spanwise::lane::Lanes;
-use spanwise::lane::bits::Bits;
-use spanwise::lane::dispatch::{InLanes, Isa, with};
-use spanwise::lane::wide::{Wide, WideBits};
+use spanwise::lane::{InLanes, Isa, with};
+use spanwise::lane::{Wide, WideBits};
+use spanwise::road::Feature;
+use spanwise::road::InverseFft;
+use spanwise::road::Patch;
+use spanwise::road::Point;
+use spanwise::road::Profile;
 use spanwise::road::Road;
-use spanwise::road::feature::Feature;
-use spanwise::road::fft::InverseFft;
+use spanwise::road::Synthesis;
 use spanwise::road::golden_car;
-use spanwise::road::patch::Patch;
-use spanwise::road::philox::{philox4x32, philox4x32_lanes};
-use spanwise::road::point::Point;
-use spanwise::road::profile::Profile;
-use spanwise::road::random::Synthesis;
-use spanwise::road::spectrum::{Class, Spectrum};
 use spanwise::road::turn;
+use spanwise::road::{Class, Spectrum};
+use spanwise::road::{philox4x32, philox4x32_lanes};
 
 /// Usual contact patch of a lorry's tyre [m].
 const PATCH: f64 = 0.24;

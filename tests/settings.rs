@@ -1,6 +1,6 @@
 //! Settings of a crossing: what is refused, by name.
 
-use spanwise::passage::settings::{Settings, Tail};
+use spanwise::passage::{Settings, Tail};
 
 #[test]
 fn values_that_are_not_allowed_are_named() {

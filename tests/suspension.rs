@@ -7,13 +7,13 @@ use std::sync::Arc;
 use crate::problems::mechanics::{motion, orders, profile, runge_kutta};
 use crate::problems::vehicles::leaf;
 use crate::problems::*;
-use spanwise::bridge::lumping::Stations;
-use spanwise::passage::settings::Settings;
+use spanwise::bridge::Stations;
+use spanwise::passage::Settings;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
 
 /// An observed order may differ from that of the rule by this much.
 const ORDER_MARGIN: f64 = 0.1;
@@ -156,8 +156,8 @@ fn dampers_beside_friction() {
 /// The road rises at once: without dampers in the tyre the load jumps by k_t times the rise, and nothing else does.
 #[test]
 fn a_step_in_the_road() {
-    use spanwise::road::feature::Feature;
-    use spanwise::road::patch::Patch;
+    use spanwise::road::Feature;
+    use spanwise::road::Patch;
     let step: Road = Feature::step(-10.0, 0.005, Patch::new(0.0).unwrap()).unwrap().into();
     let stations = Stations::PerSpan(vec![3]);
     let bridge = continuous(&[SPAN], [PINNED; 2], &[2e9], &[5e3], &stations, &[]).unwrap();
@@ -185,7 +185,7 @@ fn a_step_in_the_road() {
 /// Whatever the stroke, a leaf spring gives back no more than it has taken in; one that would is refused.
 #[test]
 fn leaf_springs_take_energy() {
-    use spanwise::step::friction::{Law, Stroke};
+    use spanwise::step::{Law, Stroke};
     let (limit, spring) = (4e3, 8e5);
     let longest = limit / spring;
     for decay in [0.1 * longest, 0.5 * longest, longest] {

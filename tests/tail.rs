@@ -7,28 +7,28 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::coordinate::Coordinate;
-use spanwise::crossing::analysis::{Analysis, Preparation};
+use spanwise::crossing::History;
+use spanwise::crossing::Observer;
+use spanwise::crossing::Watch;
 use spanwise::crossing::cross;
-use spanwise::crossing::history::History;
-use spanwise::crossing::observer::Observer;
-use spanwise::crossing::tail::Watch;
+use spanwise::crossing::{Analysis, Preparation};
 use spanwise::damping::{Damping, ModalDamping};
+use spanwise::ensemble::Column;
 use spanwise::ensemble::Study;
-use spanwise::ensemble::results::Column;
-use spanwise::ensemble::sample::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Factors, Parameter, Samples};
 use spanwise::error::Error;
-use spanwise::lane::dispatch::Isa;
+use spanwise::lane::Isa;
 use spanwise::modes::Modes;
-use spanwise::passage::settings::{Settings, Tail};
 use spanwise::passage::{Braking, Drive, Passage};
+use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::statics::flexibility::Flexibility;
-use spanwise::statics::influence::Quantity;
-use spanwise::step::bridge_step::ModalSolve;
-use spanwise::step::newmark::Newmark;
-use spanwise::step::vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};
+use spanwise::statics::Flexibility;
+use spanwise::statics::Quantity;
+use spanwise::step::ModalSolve;
+use spanwise::step::Newmark;
+use spanwise::step::{LOOK_EVERY, PERIODS, Reach, Vibration};
 use spanwise::vehicle::Vehicle;
 
 use crate::problems::ensemble::{ALL, SEED, check_alone, mixed, mixed_samples, roads, some};
@@ -97,7 +97,7 @@ fn vehicles() -> Vec<(&'static str, Vehicle)> {
     vec![
         ("forces", Vehicle::force_train(&[9e4, 1.2e5], &[0.0, -3.5]).unwrap()),
         ("friction", kishan_vehicle()),
-        ("half-car", half_car([700.0, 1100.0], 1.0, 1.0, spanwise::vehicle::body::Friction::NONE)),
+        ("half-car", half_car([700.0, 1100.0], 1.0, 1.0, spanwise::vehicle::Friction::NONE)),
     ]
 }
 
@@ -302,7 +302,7 @@ fn a_standing_vehicle_has_the_longest_tail() {
 fn the_tail_is_none_of_the_vehicles_business() {
     let road = Arc::new(roads(1024e-6).road(SEED, 3).into());
     let of = |tail: Tail| {
-        let vehicle = half_car([700.0, 1100.0], 0.3, 0.0, spanwise::vehicle::body::Friction::NONE);
+        let vehicle = half_car([700.0, 1100.0], 0.3, 0.0, spanwise::vehicle::Friction::NONE);
         let settings = Settings { tail, approach: 20.0, road: Arc::clone(&road), ..Settings::at_speed(30.0) };
         let damping = Damping::Ratios(vec![0.02]);
         let passages = [Passage::of(vehicle)];

@@ -5,15 +5,15 @@ use crate::problems::mechanics::{profile, run_all};
 use crate::problems::vehicles::{elastic, half_car};
 use crate::problems::*;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
+use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::passage::{Braking, Direction, Drive, Passage};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Friction;
 
 /// Two computations of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;

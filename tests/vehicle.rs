@@ -3,9 +3,9 @@
 use crate::problems::{in_series, kishan_vehicle, largest_difference, spread};
 use nalgebra::{DMatrix, DVector};
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::{Axle, Body, Coupling, Suspension};
-use spanwise::vehicle::body::{BuildUp, Friction, STICK};
-use spanwise::vehicle::equations::{Assembly, ContactLaw};
+use spanwise::vehicle::{Assembly, ContactLaw};
+use spanwise::vehicle::{Axle, Body, Coupling, Suspension};
+use spanwise::vehicle::{BuildUp, Friction, STICK};
 
 /// Two ways to solve the same small linear systems.
 const SOLVED: f64 = 1e-10;

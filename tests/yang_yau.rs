@@ -3,9 +3,9 @@
 
 use crate::problems::answers::YangYau;
 use crate::problems::*;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::vehicle::body::Suspension;
+use spanwise::vehicle::Suspension;
 
 /// The published deflections have five digits; the rest is for their steps and ours.
 const DEFLECTION: f64 = 5e-4;

@@ -115,7 +115,7 @@ pub trait InLanes {
 ///
 /// ```
 /// #![forbid(unsafe_code)]
-/// use spanwise::lane::{Lane, wide::Wide};
+/// use spanwise::lane::{Lane, Wide};
 /// assert_eq!(Wide::<8>::splat(1.0).get(0), 1.0);
 /// ```
 ///
@@ -123,8 +123,7 @@ pub trait InLanes {
 ///
 /// ```compile_fail
 /// #![forbid(unsafe_code)]
-/// use spanwise::lane::Lanes;
-/// use spanwise::lane::dispatch::{InLanes, Isa, with};
+/// use spanwise::lane::{InLanes, Isa, Lanes, with};
 ///
 /// struct One;
 ///

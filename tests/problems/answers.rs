@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use super::{CLAMPED, PINNED, sprung_mass};
 use spanwise::bridge::Bridge;
-use spanwise::bridge::lumping::Stations;
-use spanwise::bridge::support::Fixity;
+use spanwise::bridge::Fixity;
+use spanwise::bridge::Stations;
 use spanwise::vehicle::Vehicle;
 
 /// A uniform bridge whose natural frequencies are known: ω = (βL)² √(EI/m) / L², with L the first span.

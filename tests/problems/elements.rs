@@ -6,8 +6,8 @@
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use spanwise::bridge::Bridge;
-use spanwise::bridge::support::Support;
-use spanwise::statics::flexibility::Structure;
+use spanwise::bridge::Support;
+use spanwise::statics::Structure;
 
 use super::outer_supports;
 

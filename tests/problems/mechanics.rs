@@ -1,19 +1,19 @@
 //! What tests need to write down equations of motion beside those of the library.
 
 use spanwise::bridge::Bridge;
-use spanwise::bridge::cubics::{Line, Mesh};
-use spanwise::crossing::analysis::Preparation;
+use spanwise::bridge::{Line, Mesh};
+use spanwise::crossing::Preparation;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
 use spanwise::passage::Passage;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::recovery::Recovery;
+use spanwise::road::Patch;
+use spanwise::road::Profile;
 use spanwise::road::Road;
-use spanwise::road::patch::Patch;
-use spanwise::road::profile::Profile;
-use spanwise::statics::flexibility::Flexibility;
-use spanwise::step::friction::{Law, Stroke};
+use spanwise::statics::Flexibility;
+use spanwise::step::{Law, Stroke};
 use spanwise::stop_token::StopToken;
 use spanwise::vehicle::Vehicle;
 
@@ -135,7 +135,7 @@ impl Budget {
 
     /// Of a vehicle whose axles have mass, without friction in the static state; `rolls` if the speed is its own.
     pub fn of(run: &Run, vehicle: &Vehicle, road: &Road, ratio: f64, rolls: bool) -> Self {
-        use spanwise::vehicle::equations::ContactLaw;
+        use spanwise::vehicle::ContactLaw;
         let (history, assembly) = (&run.outcome.history, vehicle.assembly());
         let shapes = Shapes::new(&run.bridge, history.modes);
         let mass = if rolls { &assembly.mass + &assembly.surge_mass } else { assembly.mass.clone() };

@@ -8,21 +8,21 @@ pub mod mechanics;
 pub mod vehicles;
 
 use faer::Mat;
-use spanwise::bridge::distribution::Along;
-use spanwise::bridge::lumping::Stations;
-use spanwise::bridge::support::{Fixity, Support};
+use spanwise::bridge::Along;
+use spanwise::bridge::Stations;
 use spanwise::bridge::{Bridge, Layout};
-use spanwise::crossing::analysis::{Analysis, Outcome};
+use spanwise::bridge::{Fixity, Support};
+use spanwise::crossing::{Analysis, Outcome};
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::passage::settings::Settings;
+use spanwise::passage::Settings;
 use spanwise::passage::{Drive, Passage};
 use spanwise::recovery::Recovery;
-use spanwise::statics::flexibility::Flexibility;
-use spanwise::statics::influence::Quantity;
+use spanwise::statics::Flexibility;
+use spanwise::statics::Quantity;
+use spanwise::vehicle::Axle;
+use spanwise::vehicle::Friction;
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::Axle;
-use spanwise::vehicle::body::Friction;
 
 /// One foot [m].
 pub const FOOT: f64 = 0.3048;

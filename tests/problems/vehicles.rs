@@ -1,8 +1,8 @@
 //! Vehicles with unsprung masses, and trailers.
 
 use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::body::{Axle, Body, Coupling};
-use spanwise::vehicle::body::{BuildUp, Friction};
+use spanwise::vehicle::{Axle, Body, Coupling};
+use spanwise::vehicle::{BuildUp, Friction};
 
 /// Half-car of a truck: tyres and suspensions, dampers as multiples of the usual ones, friction as a share of the load.
 pub fn half_car(unsprung: [f64; 2], suspension_damping: f64, tyre_damping: f64, friction: Friction) -> Vehicle {
