@@ -107,12 +107,16 @@ pub mod passage;
 
 pub mod force_summation;
 pub mod recovery;
+
+pub mod tape;
+
 pub mod selection;
+
 pub mod stops;
 
 pub mod extremes;
+
 pub mod statistics;
-pub mod tape;
 
 pub mod crossing;
 
