@@ -8,13 +8,14 @@
 //!
 //! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::bridge_step`], together with the vehicles in [`step::stepper`]).
 //!
-//! A [`vehicle`] in its own coordinates presses on it through its contacts with the axle loads P, by the contact law of
-//! tyre, suspension, friction and lift-off ([`step::contact`]), on a [`road`]. One [`step`] moves them all together, in
-//! [`lane`]s: of one crossing or of several samples side by side. Where the contacts are is a matter of [`geometry`],
-//! and so of how the vehicle makes its [`passage`]. From A and P follow all responses by [`force_summation`], with
-//! inertia and damping forces from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one
-//! row each ([`recovery`]), R = ρ·A + Σ g(x) P. A [`crossing`] goes through time step by step, its tail included, and
-//! is searched for the extremes of every response ([`crossing::extremes`]); an [`ensemble`] is many of them, each the
+//! A [`vehicle`] (published ones are in its [catalogue](vehicle::catalogue)) in its own coordinates presses on it
+//! through its contacts with the axle loads P, by the contact law of tyre, suspension, friction and lift-off
+//! ([`step::contact`]), on a [`road`]. One [`step`] moves them all together, in [`lane`]s: of one crossing or of
+//! several samples side by side. Where the contacts are is a matter of [`geometry`], and so of how the vehicle
+//! makes its [`passage`]. From A and P follow all responses by [`force_summation`], with inertia and damping forces
+//! from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one row each
+//! ([`recovery`]), R = ρ·A + Σ g(x) P. A [`crossing`] goes through time step by step, its tail included, and is
+//! searched for the extremes of every response ([`crossing::extremes`]); an [`ensemble`] is many of them, each the
 //! same to the bit as alone.
 //!
 //! # A crossing, and many

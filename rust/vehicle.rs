@@ -1,9 +1,10 @@
 //! Plane vehicles: rigid bodies on axles, hinged or sprung to each other; trains of forces or masses.
 //!
 //! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
-//! The parts are in [`body`], the matrices made of them in [`equations`].
+//! The parts are in [`body`], the matrices made of them in [`equations`], published vehicles in [`catalogue`].
 
 pub mod body;
+pub mod catalogue;
 pub mod dense;
 pub mod equations;
 
@@ -11,6 +12,9 @@ use crate::error::{Error, finite, not_negative, positive};
 use crate::float_mode::Standard;
 use crate::vehicle::body::{Axle, Body, BuildUp, Coupling, Friction, Suspension};
 use crate::vehicle::equations::{Assembly, ContactLaw, front_first, positions, prefix};
+
+/// Standard gravity [m/s²].
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;
@@ -137,6 +141,11 @@ impl Vehicle {
     /// Axles of all bodies, front first, each with its position in its own body; none of a train.
     pub fn axles(&self) -> &[Axle] {
         &self.axles
+    }
+
+    /// Positions of a train, as given [m]; none of a vehicle of bodies.
+    pub fn places(&self) -> &[f64] {
+        &self.places
     }
 
     /// The vehicle as the time step sees it.
