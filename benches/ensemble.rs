@@ -12,9 +12,7 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_grou
 use problems::ensemble::{SEED, headline, isas, one, run, samples, synthesis};
 use pulp::{Simd, WithSimd};
 use spanwise::ensemble::Drawing;
-use spanwise::lane::Lane;
-use spanwise::lane::{InLanes, with};
-use spanwise::lane::{Lanes, Work};
+use spanwise::lane::{InLanes, Lane, Lanes, Work, with};
 use spanwise::road::Synthesis;
 
 /// Crossings per measurement.

@@ -5,11 +5,8 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use spanwise::ensemble::Drawing;
-use spanwise::lane::Lanes;
-use spanwise::lane::{InLanes, Isa, with};
-use spanwise::road::Patch;
-use spanwise::road::Spectrum;
-use spanwise::road::Synthesis;
+use spanwise::lane::{InLanes, Isa, Lanes, with};
+use spanwise::road::{Patch, Spectrum, Synthesis};
 
 /// Draws the roads of so many blocks, one after the other.
 struct Draw<'a> {

@@ -1,17 +1,14 @@
 //! Impact factors of the midspan moment of a simple span under a lorry, speed by speed: `cargo run --release --example speeds`.
 
-use spanwise::bridge::Layout;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Layout, Stations};
 use spanwise::crossing::Preparation;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
 use spanwise::passage::Settings;
-use spanwise::statics::Flexibility;
-use spanwise::statics::Quantity;
+use spanwise::statics::{Flexibility, Quantity};
 use spanwise::stop_token::StopToken;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Vehicle};
 
 fn main() -> Result<(), Error> {
     let stop = StopToken::NEVER;

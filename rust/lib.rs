@@ -8,8 +8,8 @@
 //!
 //! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::ModalSolve`], together with the vehicles in [`step::Stepper`]).
 //!
-//! A [`vehicle`] in its own coordinates presses on it through its contacts with the axle loads P, by the contact law of
-//! tyre, suspension, friction and lift-off ([`step::Contact`]), on a [`road`]. One [`step`] moves them all together, in
+//! A [`vehicle`], one of the [catalogue](vehicle::catalogue) or another, presses in its own coordinates on it through its
+//! contacts with the axle loads P, by the contact law of tyre, suspension, friction and lift-off ([`step::Contact`]), on a [`road`]. One [`step`] moves them all together, in
 //! [`lane`]s: of one crossing or of several samples side by side. Where the contacts are is a matter of [`geometry`],
 //! and so of how the vehicle makes its [`passage`]. From A and P follow all responses by [`force_summation`], with
 //! inertia and damping forces from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one

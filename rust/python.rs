@@ -180,7 +180,18 @@ mod _core {
     #[pymodule_export]
     use super::road::{PyRoad, road_classes};
     #[pymodule_export]
-    use super::vehicle::PyVehicle;
+    use super::vehicle::{
+        PyVehicle, articulated_5_axle, cl_625, flm3, flm4, half_car, hs20, hs20_44, kishan_1973, presets, quarter_car,
+        t44,
+    };
+    use crate::vehicle::catalogue;
+
+    #[pymodule_export]
+    const FLM4_MIX: [(&str, [f64; 5]); 3] = catalogue::FLM4_MIX;
+    #[pymodule_export]
+    const HS20_REAR_SPACING: [f64; 2] = catalogue::HS20_REAR_SPACING;
+    #[pymodule_export]
+    const T44_REAR_SPACING: [f64; 2] = catalogue::T44_REAR_SPACING;
 
     /// Version of the compiled core.
     #[pymodule_export]

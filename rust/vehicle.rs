@@ -1,9 +1,10 @@
 //! Plane vehicles: rigid bodies on axles, hinged or sprung to each other; trains of forces or masses.
 //!
 //! The simplest is that of KTN73 Fig. 2: one body on massless axles, each a tyre in series with a suspension that rubs.
-//! The parts are in [`body`], the matrices made of them in [`equations`].
+//! The parts are in [`body`], the matrices made of them in [`equations`], published vehicles in [`catalogue`].
 
 pub(crate) mod body;
+pub mod catalogue;
 pub(crate) mod dense;
 pub(crate) mod equations;
 
@@ -13,6 +14,9 @@ pub use equations::{Assembly, ContactLaw, ContactPoint};
 use crate::error::{Error, finite, not_negative, positive};
 use crate::float_mode::Standard;
 use crate::vehicle::equations::{front_first, positions, prefix};
+
+/// Standard gravity [m/s²].
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Distance that tells two places apart [m]: far above rounding, far below a wheel.
 const SAME: f64 = 1e-6;
@@ -139,6 +143,11 @@ impl Vehicle {
     /// Axles of all bodies, front first, each with its position in its own body; none of a train.
     pub fn axles(&self) -> &[Axle] {
         &self.axles
+    }
+
+    /// Positions of a train, as given [m]; none of a vehicle of bodies.
+    pub fn places(&self) -> &[f64] {
+        &self.places
     }
 
     /// The vehicle as the time step sees it.

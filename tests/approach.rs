@@ -5,10 +5,8 @@ use crate::problems::{kishan_vehicle, kishan_vehicle_with_friction};
 use spanwise::coordinate::Coordinate;
 use spanwise::damping::ModalDamping;
 use spanwise::geometry::{Geometry, Surface};
-use spanwise::step::{Moving, Propulsion};
-use spanwise::step::{Scheme, State, Stepper};
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::step::{Moving, Propulsion, Scheme, State, Stepper};
+use spanwise::vehicle::{Friction, Vehicle};
 
 const SPEED: f64 = 20.0;
 const STEP: f64 = 1e-3;

@@ -2,10 +2,7 @@
 
 use crate::problems::*;
 use crate::problems::{beam, continuous};
-use spanwise::bridge::Bridge;
-use spanwise::bridge::MAX_STATIONS;
-use spanwise::bridge::Stations;
-use spanwise::bridge::{Fixity, Support};
+use spanwise::bridge::{Bridge, Fixity, MAX_STATIONS, Stations, Support};
 use spanwise::error::Error;
 
 /// Sums and positions to rounding, relative to the whole.

@@ -6,12 +6,8 @@ use faer::linalg::solvers::Solve;
 use nalgebra::DVector;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use spanwise::step::Elements;
-use spanwise::step::Stroke;
-use spanwise::step::{Contact, HELD, Prepared};
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::{ContactLaw, ContactPoint};
+use spanwise::step::{Contact, Elements, HELD, Prepared, Stroke};
+use spanwise::vehicle::{Axle, ContactLaw, ContactPoint, Friction};
 
 /// Bisection and closed form agree to this fraction of the static load.
 const BISECTED: f64 = 1e-9;

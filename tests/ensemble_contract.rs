@@ -9,16 +9,11 @@ use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
 use crate::problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
 use spanwise::bridge::Bridge;
 use spanwise::damping::Damping;
-use spanwise::ensemble::Column;
-use spanwise::ensemble::{BLOCK, Study};
-use spanwise::ensemble::{Factors, Parameter, Samples};
+use spanwise::ensemble::{BLOCK, Column, Factors, Parameter, Samples, Study};
 use spanwise::lane::Isa;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Friction, Vehicle};
 
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
 /// and some samples alone.

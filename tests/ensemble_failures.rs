@@ -4,13 +4,10 @@ use crate::problems::ensemble::study_of;
 use crate::problems::ensemble::*;
 use crate::problems::kishan_vehicle;
 use crate::problems::vehicles::{half_car, leaf};
-use spanwise::ensemble::{Factors, Parameter, Samples};
-use spanwise::ensemble::{Failure, Results};
-use spanwise::ensemble::{Progress, Run, Study, Workers};
+use spanwise::ensemble::{Factors, Failure, Parameter, Progress, Results, Run, Samples, Study, Workers};
 use spanwise::error::Error;
 use spanwise::lane::Isa;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::vehicle::Vehicle;
 

@@ -9,21 +9,16 @@ use crate::problems::vehicles::{elastic, leaf};
 use crate::problems::{CLAMPED, PINNED, spread};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestCaseError, TestRunner};
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
-use spanwise::ensemble::{Column, decoded};
-use spanwise::ensemble::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Column, Factors, Parameter, Samples, decoded};
 use spanwise::extremes::Instant;
 use spanwise::lane::Isa;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::statics::Quantity;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Friction, Vehicle};
 
 prop_compose! {
     fn any_bridge()(

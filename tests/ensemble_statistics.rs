@@ -10,18 +10,12 @@ use crate::problems::vehicles::{articulated, half_car, leaf};
 use crate::problems::{PINNED, kishan_vehicle, largest_magnitude, spread};
 use spanwise::bridge::Stations;
 use spanwise::damping::Damping;
-use spanwise::ensemble::Run;
-use spanwise::ensemble::Study;
-use spanwise::ensemble::{Column, Results};
-use spanwise::ensemble::{Factors, Parameter, Samples};
+use spanwise::ensemble::{Column, Factors, Parameter, Results, Run, Samples, Study};
 use spanwise::lane::Isa;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::statics::Quantity;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Friction, Vehicle};
 
 /// Sums of some thousand numbers in another order, relative.
 const SUMMED: f64 = 1e-9;

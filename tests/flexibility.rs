@@ -3,9 +3,7 @@
 use crate::problems::{all_arrangements, arrangements, elements, pinned, points};
 use crate::problems::{clamped, kishan_bridge, largest_magnitude};
 use faer::Mat;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
-use spanwise::bridge::Support;
+use spanwise::bridge::{Bridge, Stations, Support};
 use spanwise::statics::{Action, Flexibility, Structure};
 
 /// Closed forms and symmetry hold to rounding, relative to the largest number involved.

@@ -18,13 +18,11 @@ use spanwise::damping::Damping;
 use spanwise::ensemble::Study;
 use spanwise::float_mode::Standard;
 use spanwise::lane::Isa;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::road::Road;
 use spanwise::statics::Quantity;
-use spanwise::vehicle::Body;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Body, Vehicle};
 
 /// As a thread starts.
 const STANDARD: u32 = 0x1F80;

@@ -2,8 +2,7 @@
 
 use crate::problems::continuous;
 use crate::problems::*;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
 use spanwise::statics::Quantity;

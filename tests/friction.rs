@@ -4,9 +4,7 @@ use crate::problems::*;
 use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::statics::Quantity;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Friction, Vehicle};
 
 /// Two descriptions of the same vehicle, relative to the largest value.
 const ROUNDING: f64 = 1e-9;

@@ -4,8 +4,7 @@
 use crate::problems::answers::{MovingForce, moving_forces};
 use crate::problems::continuous;
 use crate::problems::*;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
 use spanwise::passage::Settings;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};

@@ -1,15 +1,10 @@
 //! Springs, hinges and EI that varies against closed forms and limits; mechanisms; settlements.
 
 use crate::problems::*;
-use spanwise::bridge::Stations;
-use spanwise::bridge::Support;
-use spanwise::bridge::{Along, TAPER_PIECES};
-use spanwise::bridge::{Bridge, Layout};
+use spanwise::bridge::{Along, Bridge, Layout, Stations, Support, TAPER_PIECES};
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::statics::Settled;
-use spanwise::statics::influence;
-use spanwise::statics::{Action, Flexibility, Structure};
+use spanwise::statics::{Action, Flexibility, Settled, Structure, influence};
 
 /// A few roundings of a closed form.
 const ROUNDING: f64 = 1e-11;

@@ -4,14 +4,11 @@ use faer::Mat;
 use spanwise::bridge::Bridge;
 use spanwise::crossing::{Analysis, Preparation};
 use spanwise::damping::Damping;
-use spanwise::imported::ByFlexibility;
-use spanwise::imported::Given;
-use spanwise::imported::{ByModes, GivenLines, TwoSided};
+use spanwise::imported::{ByFlexibility, ByModes, Given, GivenLines, TwoSided};
 use spanwise::modes::Modes;
 use spanwise::passage::Settings;
-use spanwise::statics::Quantity;
-use spanwise::statics::influence::{self};
-use spanwise::statics::{Action, Flexibility, Structure};
+use spanwise::statics::influence;
+use spanwise::statics::{Action, Flexibility, Quantity, Structure};
 use spanwise::stop_token::StopToken;
 
 use crate::problems::{kishan_vehicle, pinned, two_spans};

@@ -2,11 +2,9 @@
 
 use crate::problems::elements::{self, Solved};
 use crate::problems::{all_arrangements, mirrored, more_points, points};
-use spanwise::bridge::Bridge;
-use spanwise::bridge::{Line, Mesh};
-use spanwise::statics::influence::{self};
-use spanwise::statics::{Flexibility, Restraint, Structure};
-use spanwise::statics::{Quantity, Responses};
+use spanwise::bridge::{Bridge, Line, Mesh};
+use spanwise::statics::influence;
+use spanwise::statics::{Flexibility, Quantity, Responses, Restraint, Structure};
 use spanwise::stop_token::StopToken;
 
 /// Two routes to one number, the elements' the worse conditioned one, relative to the largest of its kind.

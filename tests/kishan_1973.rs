@@ -2,9 +2,8 @@
 
 use crate::problems::*;
 use spanwise::recovery::Recovery::{self, ForceSummation, Superposition};
-use spanwise::statics::Quantity;
-use spanwise::statics::influence::{self};
-use spanwise::statics::{Flexibility, Restraint, Structure};
+use spanwise::statics::influence;
+use spanwise::statics::{Flexibility, Quantity, Restraint, Structure};
 use spanwise::vehicle::Suspension;
 
 /// F* as printed [1e-6 ft/lb]: stations 1 to 3, support B, stations 4 to 6; the upper triangle.

@@ -3,11 +3,7 @@
 use std::marker::PhantomData;
 
 use spanwise::extremes::Peaks;
-use spanwise::lane::Bits;
-use spanwise::lane::Lane;
-use spanwise::lane::Wide;
-use spanwise::lane::{InLanes, Isa, with};
-use spanwise::lane::{Lanes, Work};
+use spanwise::lane::{Bits, InLanes, Isa, Lane, Lanes, Wide, Work, with};
 
 /// All that can go wrong, and something that does not.
 const NUMBERS: [f64; 14] = [

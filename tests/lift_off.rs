@@ -8,20 +8,14 @@ use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
 use crate::problems::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::crossing::LiftOff;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::passage::Drive;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Drive, Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
-use spanwise::road::Patch;
-use spanwise::road::Road;
-use spanwise::road::Synthesis;
-use spanwise::road::{Class, Spectrum};
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::road::{Class, Patch, Road, Spectrum, Synthesis};
+use spanwise::vehicle::{Friction, Vehicle};
 
 /// Balances of forces at an instant, to rounding of what the steps leave, relative to the weight.
 const BALANCE: f64 = 1e-9;

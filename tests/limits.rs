@@ -7,18 +7,14 @@ use std::sync::Arc;
 use crate::problems::mechanics::{motion, profile, run_all};
 use crate::problems::vehicles::{articulated, elastic, half_car, leaf};
 use crate::problems::*;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
-use spanwise::passage::{Braking, Direction, Drive, Passage};
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Braking, Direction, Drive, Passage, Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, Superposition};
 use spanwise::road::Road;
 use spanwise::statics::Quantity;
 use spanwise::step::{Law, Stroke};
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::{BuildUp, Friction};
+use spanwise::vehicle::{Axle, BuildUp, Friction, Vehicle};
 
 /// Two descriptions of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;

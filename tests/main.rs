@@ -4,6 +4,7 @@ mod problems;
 
 mod approach;
 mod bridge;
+mod catalogue;
 mod contact;
 mod crossing;
 mod energy;

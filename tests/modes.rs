@@ -3,9 +3,7 @@
 use crate::problems::answers::uniform_bridges;
 use crate::problems::beam;
 use crate::problems::*;
-use spanwise::bridge::Along;
-use spanwise::bridge::Stations;
-use spanwise::bridge::{Bridge, Layout};
+use spanwise::bridge::{Along, Bridge, Layout, Stations};
 use spanwise::error::Error;
 use spanwise::modes::Modes;
 use spanwise::statics::{Flexibility, Structure};

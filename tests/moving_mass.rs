@@ -6,10 +6,8 @@ use crate::problems::continuous;
 use crate::problems::mechanics::{Shapes, run_all, runge_kutta};
 use crate::problems::*;
 use nalgebra::{DMatrix, DVector};
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
-use spanwise::passage::Settings;
-use spanwise::passage::{Direction, Drive, Passage};
+use spanwise::bridge::{Bridge, Stations};
+use spanwise::passage::{Direction, Drive, Passage, Settings};
 use spanwise::recovery::Recovery::Superposition;
 use spanwise::vehicle::Vehicle;
 

@@ -4,16 +4,13 @@ use crate::problems::continuous;
 use crate::problems::mechanics::{Budget, motion, orders, profile, run_all, state};
 use crate::problems::vehicles::{articulated, elastic, half_car, hs20};
 use crate::problems::*;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
-use spanwise::passage::{Braking, Direction, Drive, Passage};
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Braking, Direction, Drive, Passage, Settings, Tail};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
 use spanwise::statics::Quantity;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Friction, Vehicle};
 
 /// Newmark's method with γ = ½ is of second order; an observed order may differ from it by this much.
 const ORDER: f64 = 2.0;

@@ -3,15 +3,13 @@
 use crate::problems::continuous;
 use crate::problems::*;
 use faer::Mat;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
 use spanwise::force_summation::{Recovered, Sequence};
 use spanwise::modes::Modes;
 use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
-use spanwise::statics::Quantity;
-use spanwise::statics::Restraint;
+use spanwise::statics::{Quantity, Restraint};
 
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;

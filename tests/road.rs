@@ -6,22 +6,11 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 use spanwise::ensemble::Drawing;
 use spanwise::error::Error;
-use spanwise::lane::Bits;
-use spanwise::lane::Lane;
-use spanwise::lane::Lanes;
-use spanwise::lane::{InLanes, Isa, with};
-use spanwise::lane::{Wide, WideBits};
-use spanwise::road::Feature;
-use spanwise::road::InverseFft;
-use spanwise::road::Patch;
-use spanwise::road::Point;
-use spanwise::road::Profile;
-use spanwise::road::Road;
-use spanwise::road::Synthesis;
-use spanwise::road::golden_car;
-use spanwise::road::turn;
-use spanwise::road::{Class, Spectrum};
-use spanwise::road::{philox4x32, philox4x32_lanes};
+use spanwise::lane::{Bits, InLanes, Isa, Lane, Lanes, Wide, WideBits, with};
+use spanwise::road::{
+    Class, Feature, InverseFft, Patch, Point, Profile, Road, Spectrum, Synthesis, golden_car, philox4x32,
+    philox4x32_lanes, turn,
+};
 
 /// Usual contact patch of a lorry's tyre [m].
 const PATCH: f64 = 0.24;

@@ -11,9 +11,7 @@ use spanwise::bridge::Stations;
 use spanwise::passage::Settings;
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Axle, Friction, Vehicle};
 
 /// An observed order may differ from that of the rule by this much.
 const ORDER_MARGIN: f64 = 0.1;

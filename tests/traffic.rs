@@ -4,16 +4,13 @@ use crate::problems::continuous;
 use crate::problems::mechanics::{profile, run_all};
 use crate::problems::vehicles::{elastic, half_car};
 use crate::problems::*;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Stations};
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::passage::Settings;
-use spanwise::passage::{Braking, Direction, Drive, Passage};
+use spanwise::passage::{Braking, Direction, Drive, Passage, Settings};
 use spanwise::recovery::Recovery::ForceSummation;
 use spanwise::road::Road;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::vehicle::{Friction, Vehicle};
 
 /// Two computations of the same thing, relative to its largest value.
 const ROUNDING: f64 = 1e-9;

@@ -2,10 +2,9 @@
 
 use crate::problems::{in_series, kishan_vehicle, largest_difference, spread};
 use nalgebra::{DMatrix, DVector};
-use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::{Assembly, ContactLaw};
-use spanwise::vehicle::{Axle, Body, Coupling, Suspension};
-use spanwise::vehicle::{BuildUp, Friction, STICK};
+use spanwise::vehicle::{
+    Assembly, Axle, Body, BuildUp, ContactLaw, Coupling, Friction, STICK, Suspension, Vehicle, catalogue,
+};
 
 /// Two ways to solve the same small linear systems.
 const SOLVED: f64 = 1e-10;
@@ -25,10 +24,11 @@ fn body(mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<Axle>, couplin
 
 /// A tractor with its trailer, five axles, of which one is massless if wanted.
 fn articulated(massless: bool) -> Vec<Body> {
-    let mass = if massless { 0.0 } else { 1100.0 };
-    let front = vec![axle(0.5, 700.0, 1.75e6, 4e5), axle(-2.5, mass, 3.5e6, 1e6)];
-    let rear = [-1.8, -2.9, -4.0].map(|x| axle(x, 750.0, 3.5e6, 7.5e5)).to_vec();
-    vec![body(4500.0, 4604.0, 0.9, front, vec![]), body(31_450.0, 16_302.0, 1.9, rear, vec![hinge(0, -2.15, 6.15)])]
+    let mut bodies = catalogue::articulated_5_axle([0.9, 1.9], 1.1).unwrap().bodies().to_vec();
+    if massless {
+        bodies[0].axles[1].mass = 0.0;
+    }
+    bodies
 }
 
 /// A truck that draws a dolly, which carries a trailer: two hinges in a chain.

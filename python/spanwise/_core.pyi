@@ -5,6 +5,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "FLM4_MIX",
+    "HS20_REAR_SPACING",
+    "T44_REAR_SPACING",
     "Bridge",
     "Clock",
     "Crossing",
@@ -12,11 +15,22 @@ __all__ = [
     "Road",
     "Vehicle",
     "__version__",
+    "articulated_5_axle",
+    "cl_625",
     "cross",
     "ensemble",
     "fingerprint",
+    "flm3",
+    "flm4",
+    "half_car",
+    "hs20",
+    "hs20_44",
+    "kishan_1973",
+    "presets",
+    "quarter_car",
     "road_classes",
     "static_loads",
+    "t44",
     "varied",
 ]
 
@@ -121,6 +135,10 @@ class Vehicle:
     @property
     def positions(self) -> NDArray[np.float64]: ...
     @property
+    def places(self) -> NDArray[np.float64]: ...
+    @property
+    def bodies(self) -> list[_Body]: ...
+    @property
     def body_positions(self) -> NDArray[np.float64]: ...
     @property
     def axle_order(self) -> list[tuple[int, int]]: ...
@@ -128,6 +146,23 @@ class Vehicle:
     def coordinates(self) -> list[str]: ...
     def static_loads(self, gravity: float) -> NDArray[np.float64]: ...
     def frequencies(self, locked: bool) -> NDArray[np.float64]: ...
+
+# Name, title and source of each entry of the catalogue, and whether it was recalled.
+def presets() -> list[tuple[str, str, str, bool]]: ...
+def kishan_1973() -> Vehicle: ...
+def quarter_car(cg_height: float) -> Vehicle: ...
+def half_car(cg_height: float) -> Vehicle: ...
+def articulated_5_axle(cg_heights: list[float], hinge_height: float) -> Vehicle: ...
+def hs20_44(cg_heights: list[float], hinge_height: float) -> Vehicle: ...
+def hs20(rear_spacing: float) -> Vehicle: ...
+def t44(rear_spacing: float) -> Vehicle: ...
+def cl_625() -> Vehicle: ...
+def flm3() -> Vehicle: ...
+def flm4(lorry: int) -> Vehicle: ...
+
+FLM4_MIX: Final[list[tuple[str, list[float]]]]
+HS20_REAR_SPACING: Final[list[float]]
+T44_REAR_SPACING: Final[list[float]]
 
 @final
 class Road:
@@ -311,7 +346,7 @@ class Clock:
 
 _Factors: TypeAlias = tuple[str, int, _Array]
 
-def varied(event: list[_Passage], factors: list[_Factors]) -> list[tuple[Vehicle, list[_Body]]]: ...
+def varied(event: list[_Passage], factors: list[_Factors]) -> list[Vehicle]: ...
 def static_loads(
     kinds: list[list[_Passage]],
     kind_of: NDArray[np.uint32],

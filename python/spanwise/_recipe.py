@@ -25,7 +25,7 @@ from spanwise.runs import Run
 from spanwise.traffic import Drive
 from spanwise.traffic import Speeds as SpeedsInTime
 from spanwise.trains import ForceTrain, MovingMasses
-from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
+from spanwise.vehicle import Vehicle, bodies_of
 from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
@@ -140,9 +140,7 @@ class Recipe(Value):
             [core_passage(each, own_speed=True) for each in event],
             [each.of(sample).core for each in self.factors],
         )
-        return [
-            _scaled(passage.vehicle, *each) for passage, each in zip(event, varied, strict=True)
-        ]
+        return [_scaled(one.vehicle, core) for one, core in zip(event, varied, strict=True)]
 
     def doubts(self) -> tuple[str, ...]:
         """Sentences to say of what is hardly meant."""
@@ -287,7 +285,7 @@ def _stiffer(support: Any, factor: float) -> Any:
     return stiffer
 
 
-def _scaled(nominal: AnyVehicle, core: _core.Vehicle, bodies: Sequence[_core._Body]) -> AnyVehicle:
+def _scaled(nominal: AnyVehicle, core: _core.Vehicle) -> AnyVehicle:
     """The vehicle that the core made of a nominal one and a sample's factors."""
     # Places are as given, not counted from a centre that factors move: axles follow each other at
     # the same distances, to the bit, and so does what is made of these numbers once more.
@@ -296,41 +294,4 @@ def _scaled(nominal: AnyVehicle, core: _core.Vehicle, bodies: Sequence[_core._Bo
         return ForceTrain(loads=shares, positions=nominal.positions)
     if isinstance(nominal, MovingMasses):
         return MovingMasses(masses=shares, positions=nominal.positions)
-    return Vehicle(bodies=[_body(each) for each in bodies])
-
-
-def _body(body: _core._Body) -> Body:
-    (mass, inertia, height), axles, hinge, springs = body
-    return Body(
-        mass=mass,
-        pitch_inertia=inertia,
-        cg_height=height,
-        axles=[_axle(each) for each in axles],
-        hinge=None
-        if hinge is None
-        else Hinge(to=hinge[0], at=hinge[1], own=hinge[2], height=hinge[3]),
-        springs=[
-            Spring(
-                to=to, at=at, own=own, stiffness=stiffness, damping=damping, **_friction(friction)
-            )
-            for to, at, own, stiffness, damping, friction in springs
-        ],
-    )
-
-
-def _axle(axle: _core._Axle) -> Axle:
-    (position, mass, tyre, tyre_damping, suspension, damping), friction = axle
-    return Axle(
-        position=position,
-        mass=mass,
-        tyre_stiffness=tyre,
-        tyre_damping=tyre_damping,
-        suspension_stiffness=suspension,
-        suspension_damping=damping,
-        **_friction(friction),
-    )
-
-
-def _friction(friction: _core._Friction) -> dict[str, Any]:
-    names = ("friction_limit", "initial_friction", "stick_stiffness", "leaf_decay")
-    return dict(zip(names, friction, strict=True))
+    return Vehicle(bodies=bodies_of(core))

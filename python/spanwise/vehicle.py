@@ -390,3 +390,50 @@ def _friction(of: Axle | Spring, prefix: str) -> _core._Friction:
     if decay is not None:
         decay = number(f"{prefix}leaf_decay", decay)
     return limit, initial, stick, decay
+
+
+def bodies_of(core: _core.Vehicle) -> list[Body]:
+    """The bodies of a vehicle of the core."""
+    return [_body_of(each) for each in core.bodies]
+
+
+def _body_of(body: _core._Body) -> Body:
+    (mass, inertia, height), axles, hinge, springs = body
+    return Body(
+        mass=mass,
+        pitch_inertia=inertia,
+        cg_height=height,
+        axles=[_axle_of(each) for each in axles],
+        hinge=None
+        if hinge is None
+        else Hinge(to=hinge[0], at=hinge[1], own=hinge[2], height=hinge[3]),
+        springs=[
+            Spring(
+                to=to,
+                at=at,
+                own=own,
+                stiffness=stiffness,
+                damping=damping,
+                **_friction_of(friction),
+            )
+            for to, at, own, stiffness, damping, friction in springs
+        ],
+    )
+
+
+def _axle_of(axle: _core._Axle) -> Axle:
+    (position, mass, tyre, tyre_damping, suspension, damping), friction = axle
+    return Axle(
+        position=position,
+        mass=mass,
+        tyre_stiffness=tyre,
+        tyre_damping=tyre_damping,
+        suspension_stiffness=suspension,
+        suspension_damping=damping,
+        **_friction_of(friction),
+    )
+
+
+def _friction_of(friction: _core._Friction) -> dict[str, Any]:
+    names = ("friction_limit", "initial_friction", "stick_stiffness", "leaf_decay")
+    return dict(zip(names, friction, strict=True))

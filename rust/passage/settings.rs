@@ -6,6 +6,7 @@ use crate::error::{Error, not_negative, positive};
 use crate::passage::Drive;
 use crate::passage::motion::reasonable;
 use crate::road::Road;
+use crate::vehicle::STANDARD_GRAVITY;
 
 /// How much free vibration is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +67,7 @@ impl Settings {
             approach: 0.0,
             ramp: 0.0,
             tail: Tail::Fixed(0.0),
-            gravity: 9.806_65,
+            gravity: STANDARD_GRAVITY,
             lift_off: true,
             road: Arc::new(Road::smooth()),
         }

@@ -13,7 +13,7 @@ use pyo3::types::PyBytes;
 use super::bridge::{Asked, PyBridge};
 use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, passage, quantity, recovery_named};
 use super::road::PyRoad;
-use super::vehicle::{PyBody, PyVehicle, parts_of};
+use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
 use crate::crossing::analysis::Analysis;
 use crate::ensemble::results::{Column, Failure, Format, fingerprint as fingerprint_of};
@@ -249,23 +249,19 @@ fn coordinates(event: &[Passage]) -> usize {
     event.iter().map(|passage| passage.vehicle.assembly().coordinates.len()).sum()
 }
 
-/// The vehicles of an event with the factors of one sample, and their bodies.
+/// The vehicles of an event with the factors of one sample.
 #[pyfunction]
 pub fn varied<'py>(
     py: Python<'py>,
     event: Vec<PyPassage<'py>>,
     factors: Vec<PyFactors<'py>>,
-) -> PyResult<Vec<(PyVehicle, Vec<PyBody>)>> {
+) -> PyResult<Vec<PyVehicle>> {
     let samples = Samples { factors: parameters(factors)?, ..Samples::at_speed(0, 1, 1.0) };
     let event = event.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
     let given: Vec<&Vehicle> = event.iter().map(|passage| &passage.vehicle).collect();
     samples.check(&[given])?;
-    let with_bodies = |vehicle: Vehicle| {
-        let bodies = vehicle.bodies().iter().map(parts_of).collect();
-        (PyVehicle(vehicle), bodies)
-    };
     let vehicles = preparing(py, coordinates(&event), move |_| varied_vehicles(&event, &samples, 0))?;
-    Ok(vehicles.into_iter().map(with_bodies).collect())
+    Ok(vehicles.into_iter().map(PyVehicle).collect())
 }
 
 /// Static axle loads of all samples [N], a row for each; NaN where the vehicle of a sample cannot be.

@@ -4,8 +4,8 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 
 use super::{Vector, preparing};
-use crate::vehicle;
 use crate::vehicle::body::{Axle, Body, BuildUp, Coupling, Friction, Suspension};
+use crate::vehicle::{self, catalogue};
 
 /// Limit, initial force, stiffness of the stick, decay of a leaf spring.
 type PyFriction = (f64, f64, Option<f64>, Option<f64>);
@@ -20,7 +20,7 @@ type PyHinge = (usize, f64, f64, f64);
 type PySpring = (usize, f64, f64, f64, f64, PyFriction);
 
 /// Mass, pitch inertia and height, axles, hinge, springs.
-pub type PyBody = ([f64; 3], Vec<PyAxle>, Option<PyHinge>, Vec<PySpring>);
+type PyBody = ([f64; 3], Vec<PyAxle>, Option<PyHinge>, Vec<PySpring>);
 
 /// A vehicle, or a train of forces or masses.
 #[pyclass(name = "Vehicle", frozen, module = "spanwise._core")]
@@ -56,6 +56,16 @@ impl PyVehicle {
     }
 
     #[getter]
+    fn places<'py>(&self, py: Python<'py>) -> Vector<'py> {
+        self.0.places().to_vec().into_pyarray(py)
+    }
+
+    #[getter]
+    fn bodies(&self) -> Vec<PyBody> {
+        self.0.bodies().iter().map(parts_of).collect()
+    }
+
+    #[getter]
     fn body_positions<'py>(&self, py: Python<'py>) -> Vector<'py> {
         self.0.assembly().body_positions.clone().into_pyarray(py)
     }
@@ -82,8 +92,37 @@ impl PyVehicle {
     }
 }
 
+/// Functions of the catalogue.
+macro_rules! published {
+    ($($name:ident($($option:ident: $kind:ty),*);)*) => {$(
+        #[pyfunction]
+        pub fn $name($($option: $kind),*) -> PyResult<PyVehicle> {
+            Ok(PyVehicle(catalogue::$name($($option),*)?))
+        }
+    )*};
+}
+
+published! {
+    kishan_1973();
+    quarter_car(cg_height: f64);
+    half_car(cg_height: f64);
+    articulated_5_axle(cg_heights: [f64; 2], hinge_height: f64);
+    hs20_44(cg_heights: [f64; 2], hinge_height: f64);
+    hs20(rear_spacing: f64);
+    t44(rear_spacing: f64);
+    cl_625();
+    flm3();
+    flm4(lorry: usize);
+}
+
+/// Name, title and source of each entry of the catalogue, and whether it was recalled.
+#[pyfunction]
+pub fn presets() -> Vec<(&'static str, &'static str, &'static str, bool)> {
+    catalogue::PRESETS.map(|preset| (preset.name, preset.title, preset.source, preset.recalled)).to_vec()
+}
+
 /// What [`body`] makes this body of.
-pub fn parts_of(body: &Body) -> PyBody {
+fn parts_of(body: &Body) -> PyBody {
     let rubs = |Friction { limit, initial, build_up }: Friction| match build_up {
         BuildUp::Leaf(decay) => (limit, initial, None, Some(decay)),
         BuildUp::Elastic(stick) => (limit, initial, Some(stick), None),

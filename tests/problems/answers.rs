@@ -4,9 +4,7 @@ use super::continuous;
 use std::f64::consts::PI;
 
 use super::{CLAMPED, PINNED, sprung_mass};
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Fixity;
-use spanwise::bridge::Stations;
+use spanwise::bridge::{Bridge, Fixity, Stations};
 use spanwise::vehicle::Vehicle;
 
 /// A uniform bridge whose natural frequencies are known: ω = (βL)² √(EI/m) / L², with L the first span.

@@ -5,8 +5,7 @@
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use spanwise::bridge::Bridge;
-use spanwise::bridge::Support;
+use spanwise::bridge::{Bridge, Support};
 use spanwise::statics::Structure;
 
 use super::outer_supports;

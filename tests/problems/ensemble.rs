@@ -6,32 +6,19 @@ use spanwise::tape::BridgeFactors;
 use std::sync::Arc;
 
 use spanwise::bridge::Bridge;
-use spanwise::crossing::History;
-use spanwise::crossing::Observer;
-use spanwise::crossing::cross;
-use spanwise::crossing::{Analysis, Preparation};
-use spanwise::crossing::{Envelope, axle_loads};
+use spanwise::crossing::{Analysis, Envelope, History, Observer, Preparation, axle_loads, cross};
 use spanwise::damping::{Damping, ModalDamping};
-use spanwise::ensemble::Shared;
-use spanwise::ensemble::Task;
-use spanwise::ensemble::{Column, Record, Results};
-use spanwise::ensemble::{Factors, Parameter, Samples};
-use spanwise::ensemble::{Plan, Progress, Run, Study, Workers};
+use spanwise::ensemble::{
+    Column, Factors, Parameter, Plan, Progress, Record, Results, Run, Samples, Shared, Study, Task, Workers,
+};
 use spanwise::error::Error;
-use spanwise::lane::Isa;
-use spanwise::lane::Lanes;
+use spanwise::lane::{Isa, Lanes};
 use spanwise::modal_bridge::ModalBridge;
 use spanwise::modes::Modes;
-use spanwise::passage::Passage;
-use spanwise::passage::{Settings, Tail};
+use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::road::Feature;
-use spanwise::road::Patch;
-use spanwise::road::Road;
-use spanwise::road::Spectrum;
-use spanwise::road::Synthesis;
-use spanwise::statics::Flexibility;
-use spanwise::statics::Quantity;
+use spanwise::road::{Feature, Patch, Road, Spectrum, Synthesis};
+use spanwise::statics::{Flexibility, Quantity};
 use spanwise::vehicle::Vehicle;
 
 use super::vehicles::{articulated, half_car, leaf};

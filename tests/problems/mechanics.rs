@@ -1,17 +1,13 @@
 //! What tests need to write down equations of motion beside those of the library.
 
-use spanwise::bridge::Bridge;
-use spanwise::bridge::{Line, Mesh};
+use spanwise::bridge::{Bridge, Line, Mesh};
 use spanwise::crossing::Preparation;
 use spanwise::damping::Damping;
 use spanwise::error::Error;
 use spanwise::modes::Modes;
-use spanwise::passage::Passage;
-use spanwise::passage::Settings;
+use spanwise::passage::{Passage, Settings};
 use spanwise::recovery::Recovery;
-use spanwise::road::Patch;
-use spanwise::road::Profile;
-use spanwise::road::Road;
+use spanwise::road::{Patch, Profile, Road};
 use spanwise::statics::Flexibility;
 use spanwise::step::{Law, Stroke};
 use spanwise::stop_token::StopToken;

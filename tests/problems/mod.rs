@@ -8,21 +8,14 @@ pub mod mechanics;
 pub mod vehicles;
 
 use faer::Mat;
-use spanwise::bridge::Along;
-use spanwise::bridge::Stations;
-use spanwise::bridge::{Bridge, Layout};
-use spanwise::bridge::{Fixity, Support};
+use spanwise::bridge::{Along, Bridge, Fixity, Layout, Stations, Support};
 use spanwise::crossing::{Analysis, Outcome};
 use spanwise::damping::Damping;
 use spanwise::error::Error;
-use spanwise::passage::Settings;
-use spanwise::passage::{Drive, Passage};
+use spanwise::passage::{Drive, Passage, Settings};
 use spanwise::recovery::Recovery;
-use spanwise::statics::Flexibility;
-use spanwise::statics::Quantity;
-use spanwise::vehicle::Axle;
-use spanwise::vehicle::Friction;
-use spanwise::vehicle::Vehicle;
+use spanwise::statics::{Flexibility, Quantity};
+use spanwise::vehicle::{Axle, Friction, Vehicle, catalogue};
 
 /// One foot [m].
 pub const FOOT: f64 = 0.3048;
@@ -254,21 +247,11 @@ pub fn uneven_damping(bridge: &Bridge) -> Mat<f64> {
 
 /// Two axles 14 ft apart that carry 32,040 lb each ([KTN73] §4).
 pub fn kishan_vehicle() -> Vehicle {
-    kishan_vehicle_with_friction(4800.0 * POUND)
+    catalogue::kishan_1973().unwrap()
 }
 
 pub fn kishan_vehicle_with_friction(friction_limit: f64) -> Vehicle {
-    let axle = |position: f64| Axle {
-        friction: Friction::coulomb(friction_limit),
-        ..Axle::new(position, 480_000.0 * POUND / FOOT, 270_000.0 * POUND / FOOT)
-    };
-    Vehicle::new(
-        2.0 * 32_040.0 * POUND / 9.806_65,
-        38_500.0 * SLUG * FOOT * FOOT,
-        6.0 * FOOT,
-        vec![axle(7.0 * FOOT), axle(-7.0 * FOOT)],
-    )
-    .unwrap()
+    vehicles::with_axles(catalogue::kishan_1973(), |_, axle| axle.friction = Friction::coulomb(friction_limit))
 }
 
 /// The paper's vehicle with axles that are linear springs: friction holds for ever, or there is none.

@@ -1,20 +1,25 @@
-//! Vehicles with unsprung masses, and trailers.
+//! Vehicles of the catalogue with other axles, and friction.
 
-use spanwise::vehicle::Vehicle;
-use spanwise::vehicle::{Axle, Body, Coupling};
-use spanwise::vehicle::{BuildUp, Friction};
+use spanwise::error::Error;
+use spanwise::vehicle::{Axle, BuildUp, Friction, Vehicle, catalogue};
+
+/// The vehicle with its axles changed, counted body by body.
+pub fn with_axles(vehicle: Result<Vehicle, Error>, change: impl Fn(usize, &mut Axle)) -> Vehicle {
+    let mut bodies = vehicle.unwrap().bodies().to_vec();
+    for (k, axle) in bodies.iter_mut().flat_map(|body| &mut body.axles).enumerate() {
+        change(k, axle);
+    }
+    Vehicle::of_bodies(bodies).unwrap()
+}
 
 /// Half-car of a truck: tyres and suspensions, dampers as multiples of the usual ones, friction as a share of the load.
 pub fn half_car(unsprung: [f64; 2], suspension_damping: f64, tyre_damping: f64, friction: Friction) -> Vehicle {
-    let axle = |k: usize, position: f64, tyre: f64, spring: f64, damper: f64| Axle {
-        mass: unsprung[k],
-        tyre_damping: tyre_damping * 1e4,
-        suspension_damping: suspension_damping * damper,
-        friction,
-        ..Axle::new(position, tyre, spring)
-    };
-    let axles = vec![axle(0, 2.375, 1.75e6, 4e5, 1e4), axle(1, -2.375, 3.5e6, 1e6, 2e4)];
-    Vehicle::new(16_200.0, 93_457.0, 1.4, axles).unwrap()
+    with_axles(catalogue::half_car(1.4), |k, axle| {
+        axle.mass = unsprung[k];
+        axle.suspension_damping *= suspension_damping;
+        axle.tyre_damping = tyre_damping * 1e4;
+        axle.friction = friction;
+    })
 }
 
 /// Friction behind an elastic stick [N/m].
@@ -27,48 +32,15 @@ pub fn leaf(limit: f64, stroke: f64) -> Friction {
     Friction { limit, initial: 0.0, build_up: BuildUp::Leaf(stroke) }
 }
 
-/// Tractor and semitrailer of five axles, after D. Cantero; dampers as multiples of the usual ones.
+/// Tractor and semitrailer of five axles, after D. Cantero; dampers as multiples of 10 kN s/m.
 pub fn articulated(suspension_damping: f64, tyre_damping: f64) -> Vehicle {
-    let axle = |position: f64, mass: f64, tyre: f64, spring: f64| Axle {
-        mass,
-        tyre_damping: tyre_damping * 1e4,
-        suspension_damping: suspension_damping * 1e4,
-        ..Axle::new(position, tyre, spring)
-    };
-    let front = vec![axle(0.5, 700.0, 1.75e6, 4e5), axle(-2.5, 1100.0, 3.5e6, 1e6)];
-    let rear = [-1.8, -2.9, -4.0].map(|x| axle(x, 750.0, 3.5e6, 7.5e5)).to_vec();
-    let hinge = Coupling::Hinge { to: 0, at: -2.15, own: 6.15, height: 1.2 };
-    let body = |mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<Axle>, couplings: Vec<Coupling>| Body {
-        mass,
-        pitch_inertia,
-        cg_height,
-        axles,
-        couplings,
-    };
-    Vehicle::of_bodies(vec![body(4500.0, 4604.0, 1.0, front, vec![]), body(31_450.0, 16_302.0, 1.9, rear, vec![hinge])])
-        .unwrap()
+    with_axles(catalogue::articulated_5_axle([1.0, 1.9], 1.2), |_, axle| {
+        axle.suspension_damping = suspension_damping * 1e4;
+        axle.tyre_damping = tyre_damping * 1e4;
+    })
 }
 
-/// Tractor and semitrailer of three axles like the HS20-44 truck of X. Shi and C. S. Cai, for the whole width, with
-/// suspension dampers as multiples of the usual ones.
+/// The HS20-44 truck as tractor and semitrailer, with suspension dampers as multiples of the usual ones.
 pub fn hs20(suspension_damping: f64) -> Vehicle {
-    let axle = |position: f64, wheels: f64, spring: f64, damper: f64, tyre: f64| Axle {
-        mass: 2.0 * wheels,
-        tyre_damping: 2.0 * 2000.0,
-        suspension_damping: 2.0 * damper * suspension_damping,
-        ..Axle::new(position, 2.0 * tyre, 2.0 * spring)
-    };
-    let front =
-        vec![axle(1.698, 490.0, 242_604.0, 2190.0, 875_082.0), axle(-2.569, 808.0, 1_903_172.0, 7882.0, 3_503_307.0)];
-    let rear = vec![axle(-2.283, 653.0, 1_969_034.0, 7182.0, 3_507_429.0)];
-    let hinge = Coupling::Hinge { to: 0, at: -2.215, own: 2.338, height: 1.2 };
-    let body = |mass: f64, pitch_inertia: f64, cg_height: f64, axles: Vec<Axle>, couplings: Vec<Coupling>| Body {
-        mass,
-        pitch_inertia,
-        cg_height,
-        axles,
-        couplings,
-    };
-    Vehicle::of_bodies(vec![body(2612.0, 2022.0, 0.9, front, vec![]), body(26_113.0, 33_153.0, 1.7, rear, vec![hinge])])
-        .unwrap()
+    with_axles(catalogue::hs20_44([0.9, 1.7], 1.2), |_, axle| axle.suspension_damping *= suspension_damping)
 }
