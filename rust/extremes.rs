@@ -198,8 +198,8 @@ pub struct Steps<const STATES: usize> {
     pub from: usize,
     /// Axles that may be on the bridge.
     pub axles: usize,
-    /// What the rows multiply, step after step, state after state.
-    pub coordinates: Vec<f64>,
+    /// What the rows multiply, step after step.
+    pub coordinates: Vec<[f64; STATES]>,
     /// The axles, step after step.
     pub placed: Vec<Placed<STATES>>,
 }
@@ -259,9 +259,8 @@ impl<const STATES: usize> pulp::WithSimd for &mut Looking<'_, STATES> {
             // From memory to registers and back as a whole: the compiler takes numbers side by side only so.
             let (mut own, of_block) = (*seen, rows.of_block(*b));
             let mut number = *from as f64;
-            for (i, coordinates) in coordinates.chunks_exact(width * STATES).enumerate() {
-                let states = std::array::from_fn(|state| &coordinates[state * width..][..width]);
-                let values = of_block.at(states, &placed[i * axles..][..*axles]);
+            for (i, coordinates) in coordinates.chunks_exact(width).enumerate() {
+                let values = of_block.at(coordinates, &placed[i * axles..][..*axles]);
                 for (own, values) in own.iter_mut().zip(values) {
                     own.take(Responding::from(values), Responding::splat(number));
                 }

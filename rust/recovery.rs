@@ -223,10 +223,32 @@ impl Rows {
                 .all(|panel| (0..4).all(|p| panel[row_a][p][i] == panel[row_b][p][j]))
     }
 
+    /// Ā_st under loads at their places, or zeros where the rows do not need it.
+    pub fn static_coordinates<'v>(
+        &self,
+        places: &'v [Place],
+        loads: &'v [f64],
+    ) -> impl Iterator<Item = f64> + use<'_, 'v> {
+        let under = move |line: &Line| {
+            let placed = places.iter().zip(loads);
+            placed.fold(0.0, |sum, (place, load)| place.map_or(sum, |(p, f)| sum + load * line.value(p, f)))
+        };
+        (0..self.width).map(move |i| self.static_shapes.get(i).map_or(0.0, under))
+    }
+
     /// Adds, mode by mode, what a static load of one at a place adds to Ā_st; nothing where the rows do not need it.
     pub fn extend_static(&self, place: Place, values: &mut Vec<f64>) {
         let shape = |i: usize| self.static_shapes.get(i).zip(place).map_or(0.0, |(line, (p, f))| line.value(p, f));
         values.extend((0..self.width).map(shape));
+    }
+
+    /// The same of a position that may be on the same panel as another.
+    #[inline]
+    pub fn place_near(&self, x: f64, other: Place) -> Place {
+        match other {
+            Some((panel, _)) if self.mesh.is_within(panel, x) => Some((panel, self.mesh.fraction(panel, x))),
+            _ => self.place(x),
+        }
     }
 
     /// Panel and fraction of a position [m].
@@ -258,10 +280,10 @@ impl BlockRows<'_> {
     /// Its responses to the coordinates and the loads of each state.
     // Always inlined, so that it is compiled for the instruction set of the loop around it.
     #[inline(always)]
-    pub fn at<const STATES: usize>(self, coordinates: [&[f64]; STATES], axles: &[Placed<STATES>]) -> [Block; STATES] {
+    pub fn at<const STATES: usize>(self, coordinates: &[[f64; STATES]], axles: &[Placed<STATES>]) -> [Block; STATES] {
         let mut values = [[0.0; WIDTH]; STATES];
-        for (values, coordinates) in values.iter_mut().zip(coordinates) {
-            for (factor, a) in self.factors.iter().zip(coordinates) {
+        for (factor, a) in self.factors.iter().zip(coordinates) {
+            for (values, a) in values.iter_mut().zip(a) {
                 for i in 0..WIDTH {
                     values[i] += factor[i] * a;
                 }

@@ -77,6 +77,12 @@ impl Mesh {
         }
     }
 
+    /// Whether a panel holds x, as [`Mesh::panel_at`] has it, its ends apart.
+    #[inline]
+    pub fn is_within(&self, panel: usize, x: f64) -> bool {
+        self.nodes[panel] <= x && x < self.nodes[panel + 1]
+    }
+
     /// x as a fraction of a panel's width, 0 at its left node.
     pub fn fraction(&self, panel: usize, x: f64) -> f64 {
         (x - self.nodes[panel]) / self.width(panel)

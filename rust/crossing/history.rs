@@ -14,7 +14,7 @@ use crate::step::stepper::State;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
 use crate::stops::{Positions, Stop};
-use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
+use crate::tape::{BridgeFactors, CHUNK, Tape, Widths};
 use crate::vehicle::equations::{Assembly, Sprung};
 
 /// Steps that are looked at together, with a question whether to go on behind them.
@@ -161,7 +161,8 @@ impl History {
         let mode = |m: usize| Coordinate { x: of(&self.a, m), v: of(&self.a_dot, m), a: of(&self.a_ddot, m) };
         widths.write_modes(row, self.modes, mode, factors);
         if widths.felt {
-            row[widths.coordinates..].copy_from_slice(&self.loads[step * self.axles..][..self.axles]);
+            let loads = &self.loads[step * self.axles..][..self.axles];
+            row[widths.coordinates..].iter_mut().zip(loads).for_each(|(own, load)| *own = *load);
         }
     }
 
@@ -196,10 +197,32 @@ impl History {
         Ok(filling.out)
     }
 
-    /// Where the axles stand at the end of a step.
+    /// Where the axles stand at the end of a step; `places` are those of another, from which it may not be far.
     pub fn places(&self, step: usize, rows: &Rows, places: &mut Vec<Place>) {
-        places.clear();
-        places.extend((0..self.axles).map(|axle| rows.place(self.x(step, axle))));
+        places.resize(self.axles, None);
+        for (axle, place) in places.iter_mut().enumerate() {
+            *place = rows.place_near(self.x(step, axle), *place);
+        }
+    }
+
+    /// Adds what the rows multiply at a step, dynamic and at rest; a `row` and the `places` of the step before are room to
+    /// work in.
+    pub fn place(
+        &self,
+        step: usize,
+        rows: &Rows,
+        widths: &Widths,
+        factors: Option<&BridgeFactors<f64>>,
+        (row, places): (&mut [f64], &mut Vec<Place>),
+        (coordinates, placed): (&mut Vec<[f64; 2]>, &mut Vec<Placed<2>>),
+    ) {
+        self.write(step, widths, factors, row);
+        self.places(step, rows, places);
+        let (dynamic, loads) = row.split_at(widths.coordinates);
+        let at_rest = rows.static_coordinates(places, &self.static_loads);
+        coordinates.extend(dynamic.iter().zip(at_rest).map(|(a, a_static)| [*a, a_static]));
+        let loads = loads.iter().zip(&self.static_loads);
+        placed.extend(places.iter().zip(loads).map(|(place, (load, at_rest))| Placed::new(*place, [*load, *at_rest])));
     }
 
     /// Of each vehicle contact forces and accelerations until the last has left the bridge, and means while its own axles
@@ -348,20 +371,16 @@ impl pulp::WithSimd for &mut Filling<'_> {
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let Filling { history, rows, range, steps, out } = self;
         let widths = Widths::of(rows, history.axles, 0);
-        let (c, mut row) = (widths.coordinates, vec![0.0; widths.used()]);
-        let (mut places, mut of_one, mut at_rest) = (Vec::new(), Vec::new(), vec![0.0; widths.used()]);
+        let mut row = vec![0.0; widths.used()];
+        let (mut places, mut coordinates, mut placed) = (Vec::new(), Vec::new(), Vec::new());
         for step in steps.clone() {
-            history.write(step, &widths, None, &mut row);
-            history.places(step, rows, &mut places);
-            of_one.clear();
-            places.iter().for_each(|place| rows.extend_static(*place, &mut of_one));
-            write_at_rest(&of_one, &history.static_loads, &mut at_rest);
-            let loads = row[c..].iter().zip(&at_rest[c..]);
-            let placed: Vec<_> = places.iter().zip(loads).map(|(p, (d, s))| Placed::new(*p, [*d, *s])).collect();
+            coordinates.clear();
+            placed.clear();
+            history.place(step, rows, &widths, None, (&mut row, &mut places), (&mut coordinates, &mut placed));
             for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
                 let first = b * WIDTH;
                 let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;
-                let values = rows.of_block(b).at([&row[..c], &at_rest[..c]], &placed);
+                let values = rows.of_block(b).at(&coordinates, &placed);
                 for (out, values) in out.iter_mut().zip(values) {
                     out.extend_from_slice(&values[wanted.clone()]);
                 }

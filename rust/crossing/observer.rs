@@ -5,7 +5,7 @@ use crate::crossing::history::{History, TOGETHER};
 use crate::crossing::tail::{FreeRows, Watch};
 use crate::error::Error;
 use crate::extremes::{Instant, Seen, Steps, at_stop, value};
-use crate::recovery::{Place, Placed, Rows};
+use crate::recovery::{Place, Rows};
 use crate::selection::Selection;
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
@@ -36,9 +36,8 @@ pub struct Observer<'a> {
 struct Desk {
     /// Steps, dynamic and at rest.
     steps: Steps<2>,
-    /// Where axles are at an instant, and what static loads of one make of the coordinates.
+    /// Where axles are at an instant.
     places: Vec<Place>,
-    of_one: Vec<f64>,
     moment: PassingInfluence,
     /// What the rows multiply before and after a stop, and at an instant, dynamic and at rest.
     sides: [Vec<f64>; 2],
@@ -89,21 +88,13 @@ impl<'a> Observer<'a> {
     /// Makes the steps from one on ready.
     fn write(&mut self, history: &History, from: usize) {
         let (widths, rows, factors, to) = (self.widths(history), self.rows, self.factors.as_ref(), self.steps);
-        let Desk { steps, places, of_one, then, then_at_rest, .. } = &mut self.desk;
+        let Desk { steps, places, then, then_at_rest, .. } = &mut self.desk;
         steps.begin(from, history.axles);
         then.resize(widths.used(), 0.0);
         then_at_rest.resize(widths.used(), 0.0);
         for step in from..to {
-            history.write(step, &widths, factors, then);
-            history.places(step, rows, places);
-            of_one.clear();
-            places.iter().for_each(|place| rows.extend_static(*place, of_one));
-            write_at_rest(of_one, &history.static_loads, then_at_rest);
-            let (coordinates, loads) = then.split_at(widths.coordinates);
-            let (coordinates_at_rest, loads_at_rest) = then_at_rest.split_at(widths.coordinates);
-            steps.coordinates.extend(coordinates.iter().chain(coordinates_at_rest));
-            let loads = loads.iter().zip(loads_at_rest);
-            steps.placed.extend(places.iter().zip(loads).map(|(place, (d, s))| Placed::new(*place, [*d, *s])));
+            let Steps { coordinates, placed, .. } = &mut *steps;
+            history.place(step, rows, &widths, factors, (then, places), (coordinates, placed));
         }
     }
 
@@ -166,7 +157,7 @@ impl<'a> Observer<'a> {
     fn partner(&mut self, history: &History, row: usize, of: usize, (extreme, instant): (f64, Instant)) -> f64 {
         let widths = self.widths(history);
         let Observer { rows, look, stops, desk, factors, .. } = self;
-        let Desk { places, of_one, sides, then, then_at_rest, influence, .. } = desk;
+        let Desk { places, sides, then, then_at_rest, influence, .. } = desk;
         let stop = match instant {
             Instant::Step(step) => {
                 history.write(step, &widths, factors.as_ref(), then);
@@ -180,9 +171,9 @@ impl<'a> Observer<'a> {
                 Some(stop)
             }
         };
-        of_one.clear();
-        places.iter().for_each(|place| rows.extend_static(*place, of_one));
-        write_at_rest(of_one, &history.static_loads, then_at_rest);
+        then_at_rest.clear();
+        then_at_rest
+            .extend(rows.static_coordinates(places, &history.static_loads).chain(history.static_loads.iter().copied()));
         influence.clear();
         let response = look.rows[row].response;
         influence.extend(places.iter().map(|place| place.map_or(0.0, |place| rows.influence_of(response, place))));

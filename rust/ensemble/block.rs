@@ -407,7 +407,7 @@ fn look_at_steps<L: Lanes>(
         let (c, axles) = (rows.width(), if loaded { table.axles() } else { 0 });
         all.begin(stretch.from, axles);
         for (i, kept) in stretch.taken().enumerate() {
-            all.coordinates.extend(kept[..c].iter().map(|a| a.get(0)));
+            all.coordinates.extend(kept[..c].iter().map(|a| [a.get(0)]));
             let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
             all.placed.extend(here.map(|(&place, load)| Placed::new(place, [load.get(0)])));
         }
