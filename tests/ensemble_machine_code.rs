@@ -13,8 +13,8 @@ use spanwise::lane::Isa;
 /// Products of whole vectors in the steps and in the recovery, at least; each has some seven hundred or more.
 const PRODUCTS: usize = 300;
 
-/// The rooms of steps, roads, recovery and extremes.
-const ROOMS: [&str; 3] = ["ensemble", "crossing", "recovery"];
+/// The rooms of steps and roads, histories, and extremes.
+const ROOMS: [&str; 3] = ["ensemble", "crossing", "extremes"];
 
 /// What is counted in a function.
 #[derive(Debug, Clone, Copy, Default)]
