@@ -3,7 +3,7 @@
 //! A [`study`] is of crossings by kinds of event, and its [`sample`]s vary them. With prescribed motion in equal steps of
 //! space, where the axles are and what their loads do to the bridge is the same for every sample, whatever its speed, its
 //! road or its springs: one [`table`] serves all, and they march [`side_by_side`], [`tabulated`] their axles by it, in
-//! [`block`]s of lanes. Samples whose motion is their own take the same step one by one ([`single`]). Either way they cross with their own
+//! [`group`]s of lanes. Samples whose motion is their own take the same step one by one ([`single`]). Either way they cross with their own
 //! vehicles and bridge where these are [`varied`]. Their steps are
 //! searched for the extremes of the responses by their [`bounds`], and what is found becomes the [`results`] of a [`run`]
 //! by its [`workers`]. Of the tables, which go on a [`shelf`]
@@ -12,9 +12,9 @@
 //! A sample's result is a function of the study, the seed and its own number, to the bit: not of the number of threads, of
 //! the width of the vectors, or of its neighbours.
 
-pub(crate) mod block;
 pub(crate) mod bounds;
 pub(crate) mod clock;
+pub(crate) mod group;
 pub(crate) mod results;
 pub(crate) mod room;
 pub(crate) mod run;
@@ -28,7 +28,7 @@ pub(crate) mod tabulated;
 pub(crate) mod varied;
 pub(crate) mod workers;
 
-pub use block::Drawing;
+pub use group::Drawing;
 pub use results::{Column, Failure, Record, Results, decoded};
 pub use sample::{Factors, Parameter, Samples};
 pub use side_by_side::Task;

@@ -186,14 +186,12 @@ pub fn at_stop<L: Lane>(
     }
 }
 
-/// Steps of one sample in which every response is evaluated, response beside response, in one state or several, as
-/// dynamic and at rest.
+/// Steps of one sample, with every response evaluated in blocks of [`WIDTH`]; in one state, or dynamic and at rest together.
 ///
 /// To bound responses chunk by chunk, as [`crate::ensemble::bounds`] does, pays where many samples share the influence of
-/// their loads. For a few it is less work to evaluate all, from the same numbers in the same order: the extremes are the
-/// same bits.
+/// their loads. For a few it is less work to evaluate all.
 #[derive(Debug, Clone, Default)]
-pub struct Steps<const STATES: usize> {
+pub struct PlacedSteps<const STATES: usize> {
     /// Number of the first.
     pub from: usize,
     /// Axles that may be on the bridge.
@@ -204,7 +202,7 @@ pub struct Steps<const STATES: usize> {
     pub placed: Vec<Placed<STATES>>,
 }
 
-impl<const STATES: usize> Steps<STATES> {
+impl<const STATES: usize> PlacedSteps<STATES> {
     /// Begins anew with a step of this number.
     pub fn begin(&mut self, from: usize, axles: usize) {
         (self.from, self.axles) = (from, axles);
@@ -244,7 +242,7 @@ impl<const STATES: usize> Steps<STATES> {
 /// Such steps being looked at: each block of responses with its extremes so far.
 struct Looking<'s, const STATES: usize> {
     rows: &'s Rows,
-    steps: &'s Steps<STATES>,
+    steps: &'s PlacedSteps<STATES>,
     blocks: Vec<(usize, [Peaks<Responding>; STATES])>,
 }
 
@@ -253,7 +251,7 @@ impl<const STATES: usize> pulp::WithSimd for &mut Looking<'_, STATES> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Looking { rows, steps: Steps { from, axles, coordinates, placed }, blocks } = self;
+        let Looking { rows, steps: PlacedSteps { from, axles, coordinates, placed }, blocks } = self;
         let width = rows.width();
         for (b, seen) in blocks {
             // From memory to registers and back as a whole: the compiler takes numbers side by side only so.

@@ -67,5 +67,5 @@ pub trait Follow: Geometry<f64> {
     fn follow(&mut self, contact: usize, motion: Coordinate<f64>, new_step: bool) -> bool;
 
     /// Holds a contact where it is, its vehicle having come to rest.
-    fn stop(&mut self, contact: usize);
+    fn hold(&mut self, contact: usize);
 }

@@ -6,18 +6,20 @@
 //! worked out for a described bridge can be [`imported`] instead. Either way it becomes a [`modal_bridge`], in whose
 //! few coordinates A it moves:
 //!
-//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in [`step::ModalSolve`], together with the vehicles in [`step::Stepper`]).
+//! Ä + DȦ + Ω²A = ΦᵀP (KTN73 Eq. 3, solved in `step/bridge_step.rs`, together with the vehicles in `step/stepper.rs`).
 //!
 //! A [`vehicle`], one of the [catalogue](vehicle::catalogue) or another, presses in its own coordinates on it through its
-//! contacts with the axle loads P, by the contact law of tyre, suspension, friction and lift-off ([`step::Contact`]), on a [`road`]. One [`step`] moves them all together, in
+//! contacts with the axle loads P, by the contact law of tyre, suspension, friction and lift-off ([`step::Contact`], in `step/contact.rs`), on a [`road`]. One [`step`] moves them all together, in
 //! [`lane`]s: of one crossing or of several samples side by side. Where the contacts are is a matter of [`geometry`],
 //! and so of how the vehicle makes its [`passage`]. From A and P follow all responses by [`force_summation`], with
 //! inertia and damping forces from Ã = A − Ā ([Eq. 11](force_summation::Sequence::inertia_forces)), or the same in one
 //! row each ([`recovery`]), R = ρ·A + Σ g(x) P.
 //!
-//! Those that are looked at ([`selection`]) are searched for their [`extremes`], at the steps, kept on a [`tape`], and at
-//! the [`stops`] between them at which an axle passes a section; [`statistics`] tell of the ride. A [`crossing`] goes
-//! through time step by step, its tail included, and an [`ensemble`] is many of them, each the same to the bit as alone.
+//! Responses that are looked at ([`selection`]) are searched for their [`extremes`] at every step and at the [`stops`]
+//! between steps, when an axle stands on a section or an end. Many samples keep their steps on a [`tape`] for that, a
+//! single crossing in its history. [`statistics`] tell of axle loads, wheels off the road and accelerations of the bodies.
+//! A [`crossing`] goes through time step by step, its tail included, and an [`ensemble`] is many of them, each the same to
+//! the bit as alone.
 //!
 //! # A crossing, and many
 //!

@@ -212,6 +212,17 @@ impl Rows {
         value([c0[i], c1[i], c2[i], c3[i]], f)
     }
 
+    /// Influence of loads at these places on a response, zero off the bridge.
+    pub fn influences(&self, response: usize, places: &[Place], influence: &mut Vec<f64>) {
+        influence.clear();
+        self.add_influences(response, places, influence);
+    }
+
+    /// Adds the same to others.
+    pub fn add_influences(&self, response: usize, places: &[Place], influence: &mut Vec<f64>) {
+        influence.extend(places.iter().map(|place| place.map_or(0.0, |place| self.influence_of(response, place))));
+    }
+
     /// Whether two responses have the same row, to the bit.
     pub fn same(&self, a: usize, b: usize) -> bool {
         let [row_a, row_b] = [a / WIDTH, b / WIDTH];

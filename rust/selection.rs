@@ -1,4 +1,4 @@
-//! Which responses are looked at, each distinct row once, and where axles pass that matter to them.
+//! Which responses are looked at, equal rows once, and the sections and ends where a passing axle can make an extreme.
 
 use crate::recovery::{Place, Rows};
 use crate::statics::influence::{Quantity, Responses};
@@ -10,7 +10,7 @@ pub struct Row {
     pub response: usize,
     /// What multiplies the modal coordinates.
     pub factors: Vec<f64>,
-    /// 1 where such a factor is negative, else 0.
+    /// By factor, 1 where it is negative: which of its largest and smallest gives the upper bound.
     pub turned: Vec<usize>,
 }
 
@@ -23,7 +23,7 @@ pub struct Mark {
     pub sides: [Place; 2],
     /// Whether nothing jumps as an axle passes: everywhere but on the free ends, whose tip the wheel drops on or off.
     pub held: bool,
-    /// Which of [`Selection::asked`] to look at.
+    /// Which list of rows in [`Selection::asked`].
     pub asked: usize,
     /// The row of the shear just inside an end of the bridge, and the sign with which an axle on that end adds to it.
     pub tip: Option<(usize, f64)>,
@@ -38,6 +38,8 @@ pub struct Selection {
     pub rows: Vec<Row>,
     /// The row of each chosen response.
     pub row_of: Vec<usize>,
+    /// The first of the chosen responses that each row stands for.
+    pub first_of_row: Vec<usize>,
     /// Whether each chosen response is a deflection.
     pub deflections: Vec<bool>,
     /// By response, the row that stands for it, if it is looked at.
@@ -58,6 +60,7 @@ impl Selection {
             chosen: Vec::new(),
             rows: Vec::new(),
             row_of: Vec::new(),
+            first_of_row: Vec::new(),
             deflections: Vec::new(),
             row_for: vec![None; responses.len()],
             marks: Vec::new(),
@@ -79,6 +82,7 @@ impl Selection {
                 look.row_of.push(row);
                 look.row_for[response] = Some(row);
                 if twin.is_none() {
+                    look.first_of_row.push(look.chosen.len());
                     own_row[response] = Some(row);
                     let factors: Vec<f64> = (0..rows.width()).map(|i| rows.factor(response, i)).collect();
                     let turned = factors.iter().map(|&factor| usize::from(factor < 0.0)).collect();
@@ -95,7 +99,7 @@ impl Selection {
     /// Of twice the number of a row, and one more of its smallest: the same by the first of the chosen responses that the
     /// row stands for.
     pub fn side(&self, of_row: f64) -> f64 {
-        let place = self.row_of.iter().position(|&row| row == of_row as usize / 2).unwrap_or(0);
+        let place = self.first_of_row.get(of_row as usize / 2).copied().unwrap_or_default();
         (2 * place) as f64 + of_row % 2.0
     }
 

@@ -1,4 +1,4 @@
-//! Statistics of the ride: axle loads, wheels off the road, accelerations of the bodies.
+//! Statistics of the ride: extremes and scatter of axle loads, wheels off the road, accelerations of the bodies.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,10 +53,10 @@ impl<L: Lane> Ride<L> {
         (self.squares[body].get(lane) / self.counted as f64).sqrt()
     }
 
-    /// Takes in the last chunk of a tape; `left` says how much of the step that follows a step the lanes go, and sums
-    /// grow where the steps are `counted`. Lanes that have ended go on as they were.
+    /// Takes in the last chunk of a tape. `left` is how much of a whole step follows each step; means grow only where
+    /// `counted`, on the bridge.
     #[inline(always)]
-    pub fn take(&mut self, tape: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> L, counted: bool) {
+    pub fn take(&mut self, tape: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> f64, counted: bool) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let Some(chunk) = tape.chunks().last() else { return };
         self.counted += if counted { chunk.rows.len() / tape.widths.all() } else { 0 };
@@ -64,7 +64,7 @@ impl<L: Lane> Ride<L> {
         for (k, static_load) in static_loads.iter().enumerate() {
             let number = widths.loads() + k;
             let loads = || chunk.rows.chunks_exact(width).map(|row| row[number]).enumerate();
-            let [most, least] = chunk.ends[number];
+            let [most, least] = chunk.limits[number];
             if L::any(self.loads[k].max.less(most) | least.less(self.loads[k].min)) {
                 let mut peaks = self.loads[k];
                 for (i, load) in loads() {
@@ -88,7 +88,7 @@ impl<L: Lane> Ride<L> {
             for (i, load) in loads() {
                 // Exactly zero is what a wheel off the road carries.
                 let now = L::select(!(load.less(zero) | zero.less(load)), zero, one);
-                aloft = aloft + left(from + i) * (one - now);
+                aloft = aloft + L::splat(left(from + i)) * (one - now);
                 lift_offs = lift_offs + grounded * (one - now);
                 grounded = now;
             }
@@ -96,7 +96,7 @@ impl<L: Lane> Ride<L> {
         }
         for (b, (largest, squares)) in self.accelerations.iter_mut().zip(&mut self.squares).enumerate() {
             let number = widths.accelerations() + b;
-            let [most, least] = chunk.ends[number];
+            let [most, least] = chunk.limits[number];
             *largest = largest.larger(most.magnitude()).larger(least.magnitude());
             if counted {
                 let mut sum = *squares;

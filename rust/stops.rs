@@ -1,4 +1,4 @@
-//! Moments between two steps at which an axle stands on a section or on an end of the bridge.
+//! Stops: instants between two steps at which an axle stands on a section or on an end of the bridge.
 //!
 //! A moment peaks, and a shear jumps, as an axle passes the section, and where the bridge has a free end every response
 //! jumps as an axle enters or leaves. These instants are part of the extremes, from the interpolated state and on both
@@ -68,7 +68,7 @@ impl Passing {
 /// Stops of a passing.
 pub const SIDES: usize = 2;
 
-/// A moment between two steps at which extremes are looked for.
+/// An instant between two steps at which extremes are looked for.
 #[derive(Debug, Clone)]
 pub struct Stop {
     /// The step at whose end it has been passed.
@@ -79,7 +79,7 @@ pub struct Stop {
     pub axle: usize,
     /// Where it stands.
     pub side: Place,
-    /// If the load of that axle and the modal accelerations jump, the step whose they are.
+    /// At a free end, the step from which the axle's load and Ä are taken, not interpolated.
     pub jump: Option<usize>,
     /// Which of [`Selection::asked`] to look at.
     pub asked: usize,
@@ -101,12 +101,11 @@ impl Stop {
 
     /// When, in steps of h [s].
     pub fn when(&self, h: f64) -> f64 {
-        Stop::between(self.step, self.fraction, h)
+        Stop::between(self.fraction, [(self.step - 1) as f64 * h, self.step as f64 * h])
     }
 
-    /// When that is so far through a step, in steps of h [s].
-    pub fn between(step: usize, fraction: f64, h: f64) -> f64 {
-        let (before, after) = ((step - 1) as f64 * h, step as f64 * h);
+    /// When that is so far through a step that begins and ends at these times [s].
+    pub fn between(fraction: f64, [before, after]: [f64; 2]) -> f64 {
         before + fraction * (after - before)
     }
 }
@@ -129,8 +128,7 @@ impl PassingInfluence {
         influence.clear();
         statics.clear();
         for &row in &look.asked[stop.asked] {
-            let response = look.rows[row].response;
-            influence.extend(places.iter().map(|place| place.map_or(0.0, |p| rows.influence_of(response, p))));
+            rows.add_influences(look.rows[row].response, places, influence);
         }
         places.iter().for_each(|place| rows.extend_static(*place, statics));
     }
@@ -159,7 +157,8 @@ impl PassingAxles {
         self.passed.iter().all(|&count| count == marks.len())
     }
 
-    /// The stops of a step, in order.
+    /// The stops of a step, by axle and then in the order in which it passes. Of a path known in advance the same are found
+    /// by search ([`crate::ensemble::table::passings`]), which a clock can afford for any number of marches.
     #[inline]
     pub fn stops(&mut self, positions: &impl Positions, step: usize, look: &Selection, stops: &mut Vec<Stop>) {
         let marks = &look.marks;

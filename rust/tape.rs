@@ -1,9 +1,10 @@
-//! Steps kept until their responses are looked at, of one crossing or of several side by side, with the largest and
-//! smallest of what they consist of.
+//! A tape: the numbers that steps leave for recovery (coordinates, axle loads, accelerations), kept chunk by chunk with the
+//! largest and smallest of each.
 
 use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::recovery::Rows;
+use crate::step::vibration::Reach;
 
 /// Steps whose responses are bounded together.
 pub const CHUNK: usize = 32;
@@ -42,8 +43,8 @@ impl Widths {
         self.coordinates + self.axles
     }
 
-    /// From which of these on they jump as a wheel drops on or off a free end, its own load apart: Ä follows a load at once,
-    /// A and Ȧ do not.
+    /// The first coordinate that jumps as a wheel drops on or off a free end: Ä follows a load at once, A and Ȧ do not. The
+    /// axle's own load jumps too.
     #[inline(always)]
     pub fn jumps(&self) -> usize {
         if self.rates { self.coordinates / 2 } else { self.coordinates }
@@ -66,18 +67,7 @@ impl Widths {
     pub fn accelerations(&self) -> usize {
         self.loads() + self.axles
     }
-}
 
-/// What a bridge that is varied makes of what the rows multiply.
-#[derive(Debug, Clone, Copy)]
-pub struct BridgeFactors<L> {
-    /// On A: the factor of the stiffness.
-    pub coordinates: L,
-    /// On Ȧ: how the damping matrix grows.
-    pub rates: L,
-}
-
-impl Widths {
     /// Writes the coordinates of a step down, by the state of each mode; on a bridge at rest there are none yet.
     #[inline(always)]
     pub fn write_modes<L: Lane>(
@@ -107,6 +97,26 @@ impl Widths {
     }
 }
 
+/// What a bridge that is varied makes of what the rows multiply.
+#[derive(Debug, Clone, Copy)]
+pub struct BridgeFactors<L> {
+    /// On A: the factor of the stiffness.
+    pub coordinates: L,
+    /// On Ȧ: how the damping matrix grows.
+    pub rates: L,
+}
+
+impl<L: Lane> BridgeFactors<L> {
+    /// What free vibration can reach of what the rows multiply, on a bridge that may be varied.
+    #[inline(always)]
+    pub fn reach(factors: Option<&Self>, reach: Reach<L>) -> Reach<L> {
+        match factors {
+            None => reach,
+            Some(factors) => reach.scaled(factors.coordinates, factors.rates),
+        }
+    }
+}
+
 /// Steps that are kept until their responses are looked at.
 #[derive(Debug, Clone)]
 pub struct Tape<L> {
@@ -119,7 +129,7 @@ pub struct Tape<L> {
     /// The step before, and then these.
     rows: Vec<L>,
     /// Largest and smallest of each number of a step, by chunk.
-    ends: Vec<[L; 2]>,
+    limits: Vec<[L; 2]>,
     /// The same by part of a chunk.
     parts: Vec<[L; 2]>,
 }
@@ -131,7 +141,7 @@ pub struct Kept<'s, L> {
     /// Its steps.
     pub rows: &'s [L],
     /// Largest and smallest of each number of a step.
-    pub ends: &'s [[L; 2]],
+    pub limits: &'s [[L; 2]],
     /// The same, part by part.
     pub parts: &'s [[L; 2]],
 }
@@ -140,7 +150,7 @@ impl<L: Lane> Tape<L> {
     /// Nothing yet.
     pub fn new() -> Self {
         let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true, rates: false };
-        Tape { widths, from: 0, steps: 0, rows: Vec::new(), ends: Vec::new(), parts: Vec::new() }
+        Tape { widths, from: 0, steps: 0, rows: Vec::new(), limits: Vec::new(), parts: Vec::new() }
     }
 
     /// Begins anew with a step of this number, with room for so many chunks.
@@ -150,11 +160,11 @@ impl<L: Lane> Tape<L> {
         // Never less, so that memory is asked for once.
         let zero = L::splat(0.0);
         self.rows.resize(self.rows.len().max((chunks * CHUNK + 1) * width), zero);
-        self.ends.resize(self.ends.len().max(chunks * width), [zero; 2]);
+        self.limits.resize(self.limits.len().max(chunks * width), [zero; 2]);
         self.parts.resize(self.parts.len().max(chunks * PARTS * width), [zero; 2]);
     }
 
-    /// Begins anew behind its last step.
+    /// Begins anew after its last step, which becomes the one before.
     pub fn go_on(&mut self) {
         let width = self.widths.all();
         self.rows.copy_within(self.steps * width..(self.steps + 1) * width, 0);
@@ -182,7 +192,7 @@ impl<L: Lane> Tape<L> {
         let width = self.widths.all();
         let chunk = self.steps / CHUNK;
         let rows = &self.rows[(self.steps + 1) * width..][..count * width];
-        let all = &mut self.ends[chunk * width..][..width];
+        let all = &mut self.limits[chunk * width..][..width];
         let parts = self.parts[chunk * PARTS * width..][..PARTS * width].chunks_exact_mut(width);
         for (p, (rows, parts)) in rows.chunks(PART * width).zip(parts).enumerate() {
             for (i, (part, all)) in parts.iter_mut().zip(all.iter_mut()).enumerate() {
@@ -224,7 +234,7 @@ impl<L: Lane> Tape<L> {
             Kept {
                 from: self.from + from,
                 rows: &self.rows[(from + 1) * width..][..count * width],
-                ends: &self.ends[chunk * width..][..width],
+                limits: &self.limits[chunk * width..][..width],
                 parts: &self.parts[chunk * PARTS * width..][..PARTS * width],
             }
         })
@@ -237,8 +247,8 @@ impl<L: Lane> Default for Tape<L> {
     }
 }
 
-/// The row of a step with loads at rest on the axles: Ā_st (KTN73 Eq. 9), from what loads of one at each axle make of it,
-/// and the loads behind it.
+/// Writes the row of a step at rest: Ā_st (KTN73 Eq. 9) from the coordinates under a unit load at each axle, then the static
+/// loads.
 #[inline(always)]
 pub fn write_at_rest<L: Lane>(of_one: &[f64], loads: &[L], row: &mut [L]) {
     let (coordinates, behind) = row.split_at_mut(row.len() - loads.len());

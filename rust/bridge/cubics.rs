@@ -69,12 +69,14 @@ impl Mesh {
 
     /// The panel that holds x (the one to the right of a node), or `None` off the bridge.
     pub fn panel_at(&self, x: f64) -> Option<usize> {
+        if self.is_on(x) { Some(self.nodes[1..self.panels()].partition_point(|&node| node <= x)) } else { None }
+    }
+
+    /// Whether x is on the bridge, where rounding does not decide.
+    #[inline]
+    pub fn is_on(&self, x: f64) -> bool {
         let rounding = 1e-12 * self.length();
-        if x >= -rounding && x <= self.length() + rounding {
-            Some(self.nodes[1..self.panels()].partition_point(|&node| node <= x))
-        } else {
-            None
-        }
+        x >= -rounding && x <= self.length() + rounding
     }
 
     /// Whether a panel holds x, as [`Mesh::panel_at`] has it, its ends apart.

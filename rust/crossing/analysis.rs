@@ -171,12 +171,24 @@ impl Analysis {
         let history = cross(&self.model, passages, settings, &mut observer, stop)?;
         let envelope = observer.conclude(&history, stop)?;
         let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
-        let rides = history.rides(&bodies, self.rows.mesh().length());
+        let rides = history.rides(&bodies, self.rows.mesh(), stop)?;
         let bounds = history.reach.as_ref().map(|reach| {
             let of_rows = self.free.bounds(reach);
             self.look.row_of.iter().map(|&row| of_rows[row]).collect()
         });
         Ok(Outcome { axle_loads: axle_loads(&history, &rides), history, envelope, rides, bounds })
+    }
+
+    /// An outcome that has travelled, if it is one of this bridge.
+    pub fn received(&self, outcome: Outcome) -> Result<Outcome, Error> {
+        let found = [outcome.history.modes, outcome.envelope.dynamic.max.len()];
+        let own = [self.modes.len(), self.responses.len()];
+        if found != own {
+            let [modes, responses] = found;
+            let allowed = format!("must be of {} modes and {} responses, as the bridge beside it", own[0], own[1]);
+            return Err(Error::input("state", format!("{modes} modes, {responses} responses"), allowed));
+        }
+        Ok(outcome)
     }
 
     /// The responses of one quantity at every instant, dynamic and static, row by row.
@@ -243,7 +255,8 @@ impl Outcome {
 /// between them and a number of other points, for deflection, moment and both shears, and for the supports; or modes whose
 /// lines there is none for.
 fn check_memory(sections: usize, modes: usize, supports: usize, points: usize) -> Result<(), Error> {
-    let (lines, panels) = (4 * sections + 2 * supports, sections + points);
+    // Of every row its factors are kept too, in some copies.
+    let (lines, panels) = (4 * sections + 2 * supports, sections + points + modes);
     check_lines("sections", sections, 2.0 * lines as f64, panels, "influence lines of so many")?;
     check_lines("modes", modes, 2.0 * modes as f64, panels, "lines of so many along the bridge")
 }

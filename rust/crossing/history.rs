@@ -1,9 +1,10 @@
 //! The states of a crossing, one row per instant, column by column.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bridge::cubics::Mesh;
 use crate::coordinate::Coordinate;
 use crate::error::Error;
 use crate::extremes::interpolate;
@@ -17,7 +18,7 @@ use crate::stops::{Positions, Stop};
 use crate::tape::{BridgeFactors, CHUNK, Tape, Widths};
 use crate::vehicle::equations::{Assembly, Sprung};
 
-/// Steps that are looked at together, with a question whether to go on behind them.
+/// Steps looked at together; afterwards the stop token is asked.
 pub const TOGETHER: usize = 1024;
 
 /// A vehicle's columns in a [`History`].
@@ -145,14 +146,11 @@ impl History {
         all
     }
 
-    /// The instants from the first with one of these axles on a bridge of this length [m] to that at which the last of
-    /// them leaves it.
-    pub fn on_bridge(&self, axles: &Range<usize>, length: f64) -> RangeInclusive<usize> {
-        // With the last axle on the end of the bridge, rounding does not decide.
-        let bridge = 0.0..=length * (1.0 + 1e-12);
-        let on = |i: &usize| self.positions[i * self.axles..][axles.clone()].iter().any(|x| bridge.contains(x));
-        let first = (0..self.len()).find(on).unwrap_or(0);
-        first..=(first..self.len()).rev().find(on).unwrap_or(first)
+    /// The steps from the first with one of these axles on the bridge to that at which the last of them leaves it.
+    pub fn on_bridge(&self, axles: &Range<usize>, mesh: &Mesh) -> Range<usize> {
+        let on = |step: &usize| axles.clone().any(|axle| mesh.is_on(self.x(*step, axle)));
+        let first = (0..=self.last_on).find(on).unwrap_or(0);
+        first..(first..=self.last_on).rev().find(on).unwrap_or(first) + 1
     }
 
     /// Writes down what the rows multiply at a step, on a bridge that may be varied by `factors`.
@@ -207,7 +205,7 @@ impl History {
 
     /// Adds what the rows multiply at a step, dynamic and at rest; a `row` and the `places` of the step before are room to
     /// work in.
-    pub fn place(
+    pub fn make_ready(
         &self,
         step: usize,
         rows: &Rows,
@@ -225,16 +223,16 @@ impl History {
         placed.extend(places.iter().zip(loads).map(|(place, (load, at_rest))| Placed::new(*place, [*load, *at_rest])));
     }
 
-    /// Of each vehicle contact forces and accelerations until the last has left the bridge, and means while its own axles
-    /// are on it; `bodies` are the vertical displacements of its bodies, as rows over its coordinates.
-    pub fn rides(&self, bodies: &[Vec<Vec<f64>>], length: f64) -> Vec<Ride<f64>> {
+    /// The ride of each vehicle: extremes until the last vehicle has left the bridge, means while its own axles are on it.
+    /// `bodies` are the vertical displacements of its bodies, as rows over its coordinates.
+    pub fn rides(&self, bodies: &[Vec<Vec<f64>>], mesh: &Mesh, stop: StopToken<'_>) -> Result<Vec<Ride<f64>>, Error> {
         let mut tape = Tape::new();
         let rides = self.vehicles.iter().zip(bodies).map(|(VehicleColumns { axles, motion, .. }, bodies)| {
             let widths = Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, rates: false };
             let mut ride = Ride::nothing(axles.len(), bodies.len());
-            let (there, end) = (self.on_bridge(axles, length), self.last_on + 1);
-            let (first, last) = (*there.start(), there.end() + 1);
-            for (steps, counted) in [(0..first, false), (first..last, true), (last..end, false)] {
+            let there = self.on_bridge(axles, mesh);
+            let (before, after) = (0..there.start, there.end..self.last_on + 1);
+            for (steps, counted) in [(before, false), (there, true), (after, false)] {
                 for from in steps.clone().step_by(CHUNK) {
                     let to = steps.end.min(from + CHUNK);
                     tape.begin(widths, from, 1);
@@ -250,14 +248,15 @@ impl History {
                     }
                     tape.take(to - from);
                     ride.take(&tape, &self.static_loads[axles.clone()], |step| self.left(step), counted);
+                    stop.check()?;
                 }
             }
-            ride
+            Ok(ride)
         });
         rides.collect()
     }
 
-    /// How much of a whole step follows this one, until the last vehicle has left the bridge.
+    /// Length of the step after this one, in whole steps; zero once the last vehicle has left.
     fn left(&self, step: usize) -> f64 {
         match step + 1 {
             next if next > self.last_on => 0.0,
@@ -376,7 +375,7 @@ impl pulp::WithSimd for &mut Filling<'_> {
         for step in steps.clone() {
             coordinates.clear();
             placed.clear();
-            history.place(step, rows, &widths, None, (&mut row, &mut places), (&mut coordinates, &mut placed));
+            history.make_ready(step, rows, &widths, None, (&mut row, &mut places), (&mut coordinates, &mut placed));
             for b in range.start / WIDTH..range.end.div_ceil(WIDTH) {
                 let first = b * WIDTH;
                 let wanted = range.start.max(first) - first..range.end.min(first + WIDTH) - first;

@@ -4,7 +4,7 @@ use crate::crossing::envelope::{Envelope, Extreme, Extremes};
 use crate::crossing::history::{History, TOGETHER};
 use crate::crossing::tail::{FreeRows, Watch};
 use crate::error::Error;
-use crate::extremes::{Instant, Seen, Steps, at_stop, value};
+use crate::extremes::{Instant, PlacedSteps, Seen, at_stop, value};
 use crate::recovery::{Place, Rows};
 use crate::selection::Selection;
 use crate::step::vibration::Reach;
@@ -35,7 +35,7 @@ pub struct Observer<'a> {
 #[derive(Default)]
 struct Desk {
     /// Steps, dynamic and at rest.
-    steps: Steps<2>,
+    steps: PlacedSteps<2>,
     /// Where axles are at an instant.
     places: Vec<Place>,
     moment: PassingInfluence,
@@ -93,8 +93,8 @@ impl<'a> Observer<'a> {
         then.resize(widths.used(), 0.0);
         then_at_rest.resize(widths.used(), 0.0);
         for step in from..to {
-            let Steps { coordinates, placed, .. } = &mut *steps;
-            history.place(step, rows, &widths, factors, (then, places), (coordinates, placed));
+            let PlacedSteps { coordinates, placed, .. } = &mut *steps;
+            history.make_ready(step, rows, &widths, factors, (then, places), (coordinates, placed));
         }
     }
 
@@ -120,11 +120,12 @@ impl<'a> Observer<'a> {
         }
     }
 
-    /// What it has come to, the crossing being over: extremes of the responses looked at, in their order.
+    /// The envelope of the responses looked at, in their order, once the crossing is over.
     pub fn conclude(mut self, history: &History, stop: StopToken<'_>) -> Result<Envelope, Error> {
         self.go_on(history, stop)?;
         let mut envelope = [Vec::new(), Vec::new(), Vec::new(), Vec::new()];
         for row in 0..self.look.rows.len() {
+            stop.check()?;
             let when = |instant| self.when(history, instant);
             let dynamic = self.dynamic.sides(row, 0, when).map(|found| (0, found));
             let at_rest = self.at_rest.sides(row, 0, when).map(|found| (1, found));
@@ -148,12 +149,12 @@ impl<'a> Observer<'a> {
             Instant::Step(step) => history.time[step],
             Instant::Stop(number) => {
                 let Stop { step, fraction, .. } = self.stops[number];
-                history.time[step - 1] + fraction * (history.time[step] - history.time[step - 1])
+                Stop::between(fraction, [history.time[step - 1], history.time[step]])
             }
         }
     }
 
-    /// The static response at an extreme of the dynamic one, the first of them, or the other way round.
+    /// What the response is in the other state, at rest or dynamic, at an extreme in one of them.
     fn partner(&mut self, history: &History, row: usize, of: usize, (extreme, instant): (f64, Instant)) -> f64 {
         let widths = self.widths(history);
         let Observer { rows, look, stops, desk, factors, .. } = self;
@@ -174,9 +175,7 @@ impl<'a> Observer<'a> {
         then_at_rest.clear();
         then_at_rest
             .extend(rows.static_coordinates(places, &history.static_loads).chain(history.static_loads.iter().copied()));
-        influence.clear();
-        let response = look.rows[row].response;
-        influence.extend(places.iter().map(|place| place.map_or(0.0, |place| rows.influence_of(response, place))));
+        rows.influences(look.rows[row].response, places, influence);
         let states = [&then[..], &then_at_rest[..]];
         let [own, other] = [states[of], states[1 - of]];
         let of_state = |state: &[f64]| value(&look.rows[row].factors, influence, state);
@@ -193,25 +192,20 @@ impl<'a> Observer<'a> {
 impl Watch for Observer<'_> {
     fn enough(&mut self, history: &History, reach: &Reach<f64>, stop: StopToken<'_>) -> Result<bool, Error> {
         let free = self.free;
-        let reach = match self.factors {
-            Some(BridgeFactors { coordinates, rates }) => reach.clone().scaled(coordinates, rates),
-            None => reach.clone(),
-        };
+        let reach = BridgeFactors::reach(self.factors.as_ref(), reach.clone());
         let load: f64 = history.static_loads.iter().sum();
         // One row that can still grow is enough to go on, and little work to ask: all others can wait.
         if let (Some((row, [most, least], steps)), Some(axles)) = (self.growing, &self.axles)
             && axles.is_past(&self.look.marks)
         {
             let widths = self.widths(history);
-            let Desk { then, influence, .. } = &mut self.desk;
+            let Desk { then, places, influence, .. } = &mut self.desk;
             let (rows, look) = (self.rows, &self.look.rows[row]);
             let mut seen = [most, least];
             for step in steps..history.len() {
                 history.write(step, &widths, self.factors.as_ref(), then);
-                influence.clear();
-                let places = (0..history.axles).map(|axle| rows.place(history.x(step, axle)));
-                influence
-                    .extend(places.map(|place| place.map_or(0.0, |place| rows.influence_of(look.response, place))));
+                history.places(step, rows, places);
+                rows.influences(look.response, places, influence);
                 let value = value(&look.factors, influence, then);
                 seen = [seen[0].max(value), seen[1].min(value)];
             }

@@ -1,5 +1,6 @@
-//! A crossing step by step: brakes, standing vehicles, ends, and what is recorded.
+//! A crossing marched through time: steps, brakes, vehicles that come to rest, when it ends, what is recorded.
 
+use crate::bridge::cubics::Mesh;
 use crate::coordinate::Coordinate;
 use crate::crossing::history::{History, VehicleColumns};
 use crate::crossing::tail::{self, Watch};
@@ -40,7 +41,7 @@ pub trait Contacts: Geometry<f64> {
     ) -> Result<(), Unsettled>;
 
     /// Holds a contact where it is, its vehicle having come to rest.
-    fn stop(&mut self, contact: usize);
+    fn hold(&mut self, contact: usize);
 }
 
 impl<M: Fn(usize, usize) -> Coordinate<f64>> Contacts for Prescribed<'_, M> {
@@ -53,7 +54,7 @@ impl<M: Fn(usize, usize) -> Coordinate<f64>> Contacts for Prescribed<'_, M> {
     }
 
     // Prescribed motion goes on as prescribed.
-    fn stop(&mut self, _: usize) {}
+    fn hold(&mut self, _: usize) {}
 }
 
 impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Contacts for Free<'_, M> {
@@ -75,8 +76,8 @@ impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Contacts for Free<'_, M> {
         rolling.advance(stepper, state, self)
     }
 
-    fn stop(&mut self, contact: usize) {
-        Follow::stop(self, contact);
+    fn hold(&mut self, contact: usize) {
+        Follow::hold(self, contact);
     }
 }
 
@@ -84,6 +85,7 @@ impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Contacts for Free<'_, M> {
 pub struct TimeLoop<'a> {
     courses: &'a [Course<'a>],
     settings: &'a Settings,
+    mesh: &'a Mesh,
     length: f64,
     h: f64,
     /// Step at whose end a vehicle alone at constant speed has left.
@@ -146,6 +148,7 @@ impl<'a> TimeLoop<'a> {
         TimeLoop {
             courses,
             settings,
+            mesh: model.shapes.mesh(),
             length,
             h: steps.h,
             leaves: steps.advance.map(|_| steps.count),
@@ -303,7 +306,7 @@ impl<'a> TimeLoop<'a> {
                 return Err(Error::Stopped { time, position: geometry.motion(course.axles.start).x });
             }
             travel[v] = Coordinate { x: travel[v].x, v: 0.0, a: 0.0 };
-            course.axles.clone().for_each(|axle| geometry.stop(axle));
+            course.axles.clone().for_each(|axle| geometry.hold(axle));
             let assembly = course.vehicle.assembly();
             self.stepper.hold(
                 v,
@@ -322,19 +325,20 @@ impl<'a> TimeLoop<'a> {
             }
             let own = course.behind.len() - 1;
             let path = self.settings.approach + self.length + course.wheelbase();
-            if self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path {
-                self.ended[v] = Some(self.passed(v, own, self.length, time));
-            } else if let Some(stands) = course.motion.stands_from()
-                && time >= course.entry + stands - 1e-9 * self.h
-            {
-                self.history.vehicles[v].stopped = Some(course.entry + stands);
-                self.ended[v] = Some(course.entry + stands);
-            } else if let Some(stopped) = self.history.vehicles[v].stopped {
-                self.ended[v] = Some(stopped);
-            }
-            if self.ended[v].is_some() && self.history.vehicles[v].stopped.is_some() {
-                let row = &self.history.positions[(self.history.len() - 1) * self.history.axles..];
-                self.loaded |= row[course.axles.clone()].iter().any(|x| (0.0..=self.length).contains(x));
+            let left = self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path;
+            let to_stand = course.motion.stands_from().map(|stands| course.entry + stands);
+            let stands = self.history.vehicles[v].stopped.or(to_stand.filter(|at| time >= at - 1e-9 * self.h));
+            let row = &self.history.positions[(self.history.len() - 1) * self.history.axles..];
+            let there = row[course.axles.clone()].iter().any(|&x| self.mesh.is_on(x));
+            match stands {
+                // For good, though it be on the very end of the bridge.
+                Some(stands) if there || !left => {
+                    self.history.vehicles[v].stopped = Some(stands);
+                    self.ended[v] = Some(stands);
+                    self.loaded |= there;
+                }
+                _ if left => self.ended[v] = Some(self.passed(v, own, self.length, time)),
+                _ => {}
             }
         }
     }

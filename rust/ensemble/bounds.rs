@@ -11,13 +11,13 @@ use crate::lane::Lane;
 use crate::selection::Row;
 use crate::tape::{PART, PARTS, Tape};
 
-/// Looks for the extremes of every response at the steps of a stretch: `chunks` of the influence of the loads, none where
+/// Looks for the extremes of every response at the steps of a tape: `chunks` of the influence of the loads, none where
 /// there is no axle on the bridge. `glanced` is scratch.
 #[inline(always)]
-pub fn survey<L: Lane>(
+pub fn search<L: Lane>(
     peaks: &mut [Peaks<L>],
     rows: &[Row],
-    stretch: &Tape<L>,
+    tape: &Tape<L>,
     chunks: Option<&[Chunk]>,
     glanced: &mut Vec<[L; 2]>,
 ) {
@@ -25,34 +25,34 @@ pub fn survey<L: Lane>(
     // which it would make long.
     macro_rules! sizes {
         ($($c:literal $a:literal),*) => {
-            match (stretch.widths.coordinates, if chunks.is_some() { stretch.widths.axles } else { 0 }) {
-                $(($c, $a) if !cfg!(debug_assertions) => survey_sizes($c, $a, peaks, rows, stretch, chunks, glanced),)*
-                (c, a) => survey_sizes(c, a, peaks, rows, stretch, chunks, glanced),
+            match (tape.widths.coordinates, if chunks.is_some() { tape.widths.axles } else { 0 }) {
+                $(($c, $a) if !cfg!(debug_assertions) => search_sizes($c, $a, peaks, rows, tape, chunks, glanced),)*
+                (c, a) => search_sizes(c, a, peaks, rows, tape, chunks, glanced),
             }
         };
     }
     sizes!(1 2, 2 2, 3 2, 4 2, 5 2, 3 3, 3 4, 3 5)
 }
 
-/// [`survey`] with so many coordinates and axles.
+/// [`search`] with so many coordinates and axles.
 #[inline(always)]
-fn survey_sizes<L: Lane>(
+fn search_sizes<L: Lane>(
     c: usize,
     a: usize,
     peaks: &mut [Peaks<L>],
     rows: &[Row],
-    stretch: &Tape<L>,
+    tape: &Tape<L>,
     chunks: Option<&[Chunk]>,
     glanced: &mut Vec<[L; 2]>,
 ) {
-    let free = Chunk::default();
-    let chunk_of = |chunk: usize| chunks.map_or(&free, |chunks| &chunks[chunk]);
-    let (felt, width) = (c + a, stretch.widths.all());
+    let unloaded = Chunk::default();
+    let chunk_of = |chunk: usize| chunks.map_or(&unloaded, |chunks| &chunks[chunk]);
+    let (felt, width) = (c + a, tape.widths.all());
     // What the extremes must reach.
     glanced.clear();
     for (r, (Row { factors, .. }, seen)) in rows.iter().zip(peaks.iter()).enumerate() {
         let (mut most, mut least) = (seen.max, seen.min);
-        for (chunk, kept) in stretch.chunks().enumerate() {
+        for (chunk, kept) in tape.chunks().enumerate() {
             let at = middle(kept.rows.len() / width);
             let value = value(&factors[..c], &chunk_of(chunk).middles[r * a..][..a], &kept.rows[at * width..][..felt]);
             most = value.larger(most);
@@ -60,23 +60,23 @@ fn survey_sizes<L: Lane>(
         }
         glanced.push([most, least]);
     }
-    for (chunk, kept) in stretch.chunks().enumerate() {
+    for (chunk, kept) in tape.chunks().enumerate() {
         let Chunk { influence, bounds, parts, .. } = chunk_of(chunk);
         let count = kept.rows.len() / width;
-        let ends = &kept.ends[..felt];
+        let ends = &kept.limits[..felt];
         let mut positive = true;
         for [_, least] in &ends[c..] {
             positive &= !L::any(least.less(L::splat(0.0)));
         }
         for (r, Row { factors, turned, .. }) in rows.iter().enumerate() {
             let (factors, turned) = (&factors[..c], &turned[..c]);
-            if !peaks[r].may_grow(reach(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
+            if !peaks[r].may_grow(bound(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
                 continue;
             }
             let mut seen = peaks[r];
             for part in 0..count.div_ceil(PART) {
                 let ends = &kept.parts[part * width..][..felt];
-                let reached = reach(factors, turned, &parts[(r * PARTS + part) * a..][..a], ends, positive);
+                let reached = bound(factors, turned, &parts[(r * PARTS + part) * a..][..a], ends, positive);
                 if !seen.may_grow(reached, glanced[r]) {
                     continue;
                 }
@@ -96,7 +96,7 @@ fn survey_sizes<L: Lane>(
 /// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
 /// are all `positive`.
 #[inline(always)]
-fn reach<L: Lane>(factors: &[f64], turned: &[usize], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
+fn bound<L: Lane>(factors: &[f64], turned: &[usize], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
     // A negative factor takes the other end.
     let first = L::splat(factors[0]);
     let mut high = first * ends[0][turned[0]];

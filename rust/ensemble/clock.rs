@@ -100,7 +100,10 @@ impl Hands<'_> {
         let position = |step: usize| path.advance * step as f64 + path.start;
         match results::decoded(instant) {
             Instant::Stop(stop) => self.passings.get(stop / SIDES).map_or((f64::NAN, f64::NAN), |passing| {
-                (Stop::between(passing.step, passing.fraction, h), passing.position)
+                (
+                    Stop::between(passing.fraction, [(passing.step - 1) as f64 * h, passing.step as f64 * h]),
+                    passing.position,
+                )
             }),
             Instant::Step(step) => {
                 let (time, there) = (step as f64 * h, position(step));

@@ -122,7 +122,7 @@ pub struct Record<'a> {
     pub instants: &'a mut [u32],
 }
 
-/// The bit that tells a moment between two steps from a step.
+/// The bit that tells a stop between two steps from a step.
 const STOP: u32 = 1 << 31;
 
 /// An instant as a number.

@@ -1,7 +1,7 @@
 //! The memory that a run takes: its results, and for every worker a table of geometry and a group of samples on it.
 
-use super::block::KEPT;
 use super::clock::Pace;
+use super::group::KEPT;
 use super::sample::Samples;
 use super::study::{March, Study};
 use super::table::{Below, READY};

@@ -1,6 +1,6 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
-use super::block::{Drawing, Ends, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest};
+use super::group::{Drawing, Ends, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest};
 use super::results::{Column, Failure, Format, Record, encoded};
 use super::sample::Samples;
 use super::study::{Kind, Study};
@@ -147,8 +147,8 @@ impl Task<'_> {
             approach,
             stepper,
             static_loads: vehicle.static_loads(gravity),
-            bridge: varied.as_ref().map(VariedBridge::factors),
-            stiffness: varied.map_or(1.0, |varied| varied.stiffness),
+            bridge: varied.as_ref().map(|varied| varied.factors),
+            stiffness: varied.map_or(1.0, |varied| varied.factors.coordinates),
         })
     }
 

@@ -1,4 +1,4 @@
-//! Samples whose motion is their own: each a single crossing, through the same step.
+//! Samples with motion of their own (braking, several vehicles, to the left): each a single crossing, through the same step.
 
 use std::sync::Arc;
 
@@ -14,8 +14,9 @@ use crate::modal_bridge::ModalBridge;
 use crate::passage::settings::Settings;
 use crate::road::Road;
 use crate::stop_token::StopToken;
+use crate::tape::BridgeFactors;
 
-/// Fills in the record of one sample; its axles' times and positions with it.
+/// Crosses with one sample and fills in its record, times and positions of extremes included.
 pub fn cross(
     study: &Study,
     format: &Format,
@@ -43,14 +44,14 @@ pub fn cross(
             &own_model
         }
     };
-    let factors = varied.as_ref().map(VariedBridge::factors);
+    let factors = varied.as_ref().map(|varied| varied.factors);
     let mut observer = Observer::new(&study.analysis.rows, &study.look, &study.free, factors);
     let history = crossing::cross(model, &passages, &settings, &mut observer, stop)?;
     let envelope = observer.conclude(&history, stop)?;
     let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
-    let rides = history.rides(&bodies, study.analysis.rows.mesh().length());
+    let rides = history.rides(&bodies, study.analysis.rows.mesh(), stop)?;
     let loads = axle_loads(&history, &rides);
-    let stiffness = varied.map_or(1.0, |varied| varied.stiffness);
+    let stiffness = factors.map_or(1.0, |factors| factors.coordinates);
     let shrink = |place: usize| if study.look.deflections[place] { stiffness } else { 1.0 };
     record.forget();
     let last = history.len() - 1;
@@ -58,11 +59,10 @@ pub fn cross(
         None => [f64::NAN; 2],
         Some(reach) => {
             let seen = |row: usize| {
-                let place = study.look.row_of.iter().position(|&own| own == row).unwrap_or_default();
+                let place = study.look.first_of_row[row];
                 [envelope.dynamic.max[place].value, envelope.dynamic.min[place].value]
             };
-            let reach = reach.clone();
-            study.free.growth(&factors.map_or(reach.clone(), |f| reach.scaled(f.coordinates, f.rates)), seen)
+            study.free.growth(&BridgeFactors::reach(factors.as_ref(), reach.clone()), seen)
         }
     };
     let (mut axles, mut bodies) = (0, 0);

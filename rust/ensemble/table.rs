@@ -1,5 +1,5 @@
-//! The geometry that samples share: at every step and passing where the axles are, the modes and the road under them,
-//! and their influence on the responses.
+//! The geometry that samples share: where the axles are at every step and stop, modes and road under them, and their
+//! influence on the responses.
 
 use std::ops::Range;
 
@@ -96,14 +96,14 @@ pub struct Table {
     pub kinds: usize,
     /// First step with an axle on the bridge, which is at rest till then.
     pub first: usize,
-    /// Moments between steps, in order.
+    /// Stops between steps, in order.
     pub stops: Vec<Stop>,
     /// Whether what the axles do to the bridge is laid out for many samples.
     pub laid_out: bool,
     /// If so, what static loads of one at the axles make of the coordinates, by step, axle and coordinate.
     statics: Vec<f64>,
     /// And the same with the influence on the rows, at every stop.
-    moments: Vec<PassingInfluence>,
+    passing_influences: Vec<PassingInfluence>,
     /// And the influence of each axle load on each row, by chunk from `first` on, if that is not too much: see
     /// [`Table::chunks`].
     ready: Option<Vec<Chunk>>,
@@ -153,7 +153,7 @@ impl Table {
             stops: Vec::new(),
             laid_out,
             statics: Vec::new(),
-            moments: Vec::new(),
+            passing_influences: Vec::new(),
             ready: None,
             path,
         };
@@ -177,12 +177,12 @@ impl Table {
         if !laid_out {
             return table;
         }
-        let moment = |stop: &Stop| {
-            let mut moment = PassingInfluence::default();
-            moment.fill(stop, &table.path, rows, look);
-            moment
+        let influence = |stop: &Stop| {
+            let mut influence = PassingInfluence::default();
+            influence.fill(stop, &table.path, rows, look);
+            influence
         };
-        table.moments = table.stops.iter().map(moment).collect();
+        table.passing_influences = table.stops.iter().map(influence).collect();
         let all = look.rows.len() * axles * (steps + 1 - table.first);
         if all <= READY {
             let chunks = (table.first..=steps).step_by(CHUNK);
@@ -214,7 +214,7 @@ impl Table {
         self.path.steps + self.path.beyond
     }
 
-    /// The chunks of a stretch of steps that begins with a chunk, and ends with one or with the path.
+    /// The chunks of a run of steps that begins with a chunk, and ends with one or with the path.
     pub fn chunks<'a>(
         &'a self,
         from: usize,
@@ -280,7 +280,7 @@ impl Table {
     }
 
     /// What the axles do to the bridge at a stop.
-    pub fn moment<'a>(
+    pub fn passing_influence<'a>(
         &'a self,
         stop: usize,
         rows: &Rows,
@@ -288,7 +288,7 @@ impl Table {
         scratch: &'a mut PassingInfluence,
     ) -> &'a PassingInfluence {
         if self.laid_out {
-            return &self.moments[stop];
+            return &self.passing_influences[stop];
         }
         scratch.fill(&self.stops[stop], &self.path, rows, look);
         scratch

@@ -1,5 +1,4 @@
-//! Where the axles of samples that share the geometry are, and what lies under them: the table, with the roads and speeds
-//! of a group of lanes.
+//! The shared table as the step sees it: contacts of a group of lanes, with their own roads and speeds.
 
 use std::sync::OnceLock;
 
@@ -81,9 +80,9 @@ impl<'a, L: Lane> Tabulated<'a, L> {
         let zero = L::splat(0.0);
         let level = Surface { elevation: zero, slope: zero, curvature: zero };
         let surfaces = vec![level; table.axles()];
-        let mut shared = Tabulated { table, road, speed, interactions, step: 0, row: 0, surfaces };
-        shared.look_down();
-        shared
+        let mut tabulated = Tabulated { table, road, speed, interactions, step: 0, row: 0, surfaces };
+        tabulated.look_down();
+        tabulated
     }
 
     #[inline(always)]

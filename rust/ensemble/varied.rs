@@ -15,10 +15,8 @@ pub struct VariedBridge {
     pub omega: Vec<f64>,
     /// Damping in modes.
     pub damping: ModalDamping,
-    /// Factor of the stiffness, on A in the rows; its inverse is that of deflections.
-    pub stiffness: f64,
-    /// How the damping matrix grows, on Ȧ in the rows.
-    pub rates: f64,
+    /// What its rows take A and Ȧ times; the inverse of the former is the factor of deflections.
+    pub factors: BridgeFactors<f64>,
 }
 
 impl VariedBridge {
@@ -38,14 +36,8 @@ impl VariedBridge {
             }
             ModalDamping::Coupled(d) => (ModalDamping::Coupled(faer::Scale(factor) * d), factor),
         };
-        Some(VariedBridge { omega: model.omega.iter().map(|w| w * root).collect(), damping, stiffness, rates })
-    }
-}
-
-impl VariedBridge {
-    /// What its rows take A and Ȧ times.
-    pub fn factors(&self) -> BridgeFactors<f64> {
-        BridgeFactors { coordinates: self.stiffness, rates: self.rates }
+        let factors = BridgeFactors { coordinates: stiffness, rates };
+        Some(VariedBridge { omega: model.omega.iter().map(|w| w * root).collect(), damping, factors })
     }
 }
 

@@ -119,7 +119,7 @@ impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Follow for Free<'_, M> {
         moving
     }
 
-    fn stop(&mut self, contact: usize) {
+    fn hold(&mut self, contact: usize) {
         let Coordinate { x, .. } = self.motions[contact];
         self.motions[contact] = Coordinate { x, v: 0.0, a: 0.0 };
     }

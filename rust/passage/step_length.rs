@@ -131,10 +131,9 @@ impl Steps {
     }
 }
 
-/// Bytes of a step: a row of the history, one of the same made ready for recovery, and one of the table of mode shapes
-/// under the axles.
+/// Bytes of a step: a row of the history, and one of the table of mode shapes and road under the axles.
 pub fn bytes(modes: usize, axles: usize, coordinates: usize, frictions: usize) -> f64 {
-    (size_of::<f64>() * (1 + 3 * coordinates + frictions + 7 * modes + 12 * axles + 3 * modes * axles)) as f64
+    (size_of::<f64>() * (1 + 3 * coordinates + frictions + 3 * modes + 8 * axles + 3 * modes * axles)) as f64
 }
 
 /// Steps that a crossing of so many, of so many bytes each, may have besides.

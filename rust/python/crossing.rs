@@ -87,6 +87,7 @@ impl Crossing {
         let read = postcard::from_bytes::<analysis::Outcome>(state);
         let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
         let analysis = interruptible(py, |stop| bridge.0.analysis(asked, stop))?;
+        let outcome = analysis.received(outcome)?;
         Ok(Crossing { analysis, outcome, vehicles })
     }
 

@@ -241,7 +241,7 @@ pub fn alone(study: &Study, samples: &Samples, sample: usize, advance: f64) -> R
     let mut observer = Observer::new(&study.analysis.rows, &study.look, &study.free, Some(varied));
     let history = cross(&own, &[passage], &settings, &mut observer, StopToken::NEVER)?;
     let envelope = observer.conclude(&history, StopToken::NEVER)?;
-    let rides = history.rides(&[vehicle.heaves()], study.analysis.rows.mesh().length());
+    let rides = history.rides(&[vehicle.heaves()], study.analysis.rows.mesh(), StopToken::NEVER)?;
     let axle_loads = axle_loads(&history, &rides);
     Ok(Alone { vehicle, axle_loads, history, envelope, stiffness, rates: root * factor })
 }
@@ -309,7 +309,7 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
         assert!((tail - length).abs() <= 1e-9 * alone.history.step, "{name}, sample {sample}: {tail} s, {length} s");
         let reach = alone.history.reach.clone().unwrap().scaled(alone.stiffness, alone.rates);
         let seen = |row: usize| {
-            let place = study.look.row_of.iter().position(|&own| own == row).unwrap();
+            let place = study.look.first_of_row[row];
             [alone.envelope.dynamic.max[place].value, alone.envelope.dynamic.min[place].value]
         };
         let [most, side] = study.free.growth(&reach, seen);

@@ -1,14 +1,14 @@
-//! One group of samples, one in each lane, through a crossing: the step of a single crossing, chunk by chunk, and after
-//! some chunks the extremes of every response in them.
+//! One group of samples side by side, one in each lane, through a whole crossing: chunks of steps, and then the extremes in
+//! them.
 
 use std::ops::Range;
 
-use super::bounds::survey;
+use super::bounds::search;
 use super::table::{Chunk, Table};
 use super::tabulated::Tabulated;
 use crate::coordinate::Coordinate;
 use crate::crossing::tail::FreeRows;
-use crate::extremes::{Peaks, Seen, Steps, at_stop, interpolate};
+use crate::extremes::{Peaks, PlacedSteps, Seen, at_stop, interpolate};
 use crate::lane::{Lane, Lanes, Work};
 use crate::recovery::{Placed, Rows};
 use crate::road::random::Synthesis;
@@ -80,7 +80,7 @@ pub struct Found<L> {
     pub reach: Option<Reach<L>>,
 }
 
-/// Why a block did not come through.
+/// Why a group did not come through.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trouble {
     /// One of its samples failed, in this step or in the chunk that ends with it.
@@ -89,7 +89,7 @@ pub enum Trouble {
     Interrupted,
 }
 
-/// Where a block marches, and what is looked at.
+/// Where a group marches, and what is looked at.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     /// The shared geometry.
@@ -104,10 +104,10 @@ pub struct Scene<'a> {
     pub closely: bool,
 }
 
-/// Most numbers that a group keeps of a stretch of steps.
+/// Most numbers on a group's tape.
 pub const KEPT: usize = 1 << 15;
 
-/// Chunks of a stretch, at most.
+/// Chunks on a tape, at most.
 fn longest(widths: &Widths) -> usize {
     (KEPT / (widths.all() * CHUNK)).max(1)
 }
@@ -115,18 +115,18 @@ fn longest(widths: &Widths) -> usize {
 /// What a worker needs again for each group, so that memory is asked for once.
 #[derive(Debug, Clone)]
 pub struct Scratch<L> {
-    stretch: Tape<L>,
+    tape: Tape<L>,
     glanced: Vec<[L; 2]>,
     between: Vec<L>,
-    moment: PassingInfluence,
+    influence: PassingInfluence,
     chunks: Vec<Chunk>,
 }
 
 impl<L: Lane> Scratch<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let (stretch, glanced) = (Tape::new(), Vec::new());
-        Scratch { stretch, glanced, between: Vec::new(), moment: PassingInfluence::default(), chunks: Vec::new() }
+        let (tape, glanced) = (Tape::new(), Vec::new());
+        Scratch { tape, glanced, between: Vec::new(), influence: PassingInfluence::default(), chunks: Vec::new() }
     }
 }
 
@@ -179,11 +179,7 @@ impl<L: Lane> Traveller<'_, '_, L> {
     /// What free vibration can reach from here on, for the rows.
     #[inline(always)]
     fn reach(&mut self) -> Reach<L> {
-        let reach = self.vibration.reach(&self.state.modes);
-        match self.group.bridge {
-            None => reach,
-            Some(BridgeFactors { coordinates, rates }) => reach.scaled(coordinates, rates),
-        }
+        BridgeFactors::reach(self.group.bridge.as_ref(), self.vibration.reach(&self.state.modes))
     }
 
     /// Whether everything is a finite number in lanes that have not ended.
@@ -224,7 +220,7 @@ struct Stepping<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     steppers: &'s mut Steppers<L>,
     scene: &'s Scene<'s>,
-    stretch: &'s mut Tape<L>,
+    tape: &'s mut Tape<L>,
     place: Where,
     steps: Range<usize>,
     stop: StopToken<'s>,
@@ -235,8 +231,8 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, scene, stretch, place, steps, stop } = self;
-        let widths = stretch.widths;
+        let Stepping { traveller, steppers, scene, tape, place, steps, stop } = self;
+        let widths = tape.widths;
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps.clone() {
             if step > 0 {
@@ -245,7 +241,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
                     return Err(Trouble::Failed(step, Some(e)));
                 }
             }
-            let [before, row] = stretch.row_mut(step);
+            let [before, row] = tape.row_mut(step);
             traveller.keep(row, &widths);
             if place == Where::Tail {
                 traveller.end(step, [before, row]);
@@ -266,7 +262,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 struct Swinging<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     reach: &'s mut Option<Reach<L>>,
-    stretch: &'s mut Tape<L>,
+    tape: &'s mut Tape<L>,
     steps: Range<usize>,
     /// The first of them in which the vehicle is not followed.
     alone: usize,
@@ -277,12 +273,12 @@ impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Swinging { traveller, reach, stretch, steps, alone } = self;
-        let widths = stretch.widths;
+        let Swinging { traveller, reach, tape, steps, alone } = self;
+        let widths = tape.widths;
         for step in steps {
             if step >= alone {
                 traveller.vibration.swing(&mut traveller.state.modes);
-                let [before, row] = stretch.row_mut(step);
+                let [before, row] = tape.row_mut(step);
                 traveller.keep(row, &widths);
                 traveller.end(step, [before, row]);
             }
@@ -317,16 +313,16 @@ impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
             let load = traveller.static_loads.iter().fold(L::splat(0.0), |sum, load| sum + *load);
             let settled = scene.free.settled(&reach, load, |row| found.seen.reached(row));
             let ending = traveller.group.ends.end(settled, step);
-            if let Some(found) = &mut found.reach {
-                found.select(ending, &reach);
+            if let Some(own) = &mut found.reach {
+                own.select(ending, &reach);
             }
         }
         found.reach.get_or_insert(reach);
     }
 }
 
-/// The same chunk being looked at: all but the responses at its steps.
-struct Looking<'s, L> {
+/// A chunk taken in: ride and stops, not yet the responses at steps.
+struct TakingIn<'s, L> {
     found: &'s mut Found<L>,
     scene: &'s Scene<'s>,
     static_loads: &'s [L],
@@ -335,35 +331,35 @@ struct Looking<'s, L> {
     steps: Range<usize>,
     /// The next stop.
     stop: &'s mut usize,
-    stretch: &'s mut Tape<L>,
+    tape: &'s mut Tape<L>,
     between: &'s mut Vec<L>,
-    moment: &'s mut PassingInfluence,
+    influence: &'s mut PassingInfluence,
 }
 
-impl<L: Lane> Work for Looking<'_, L> {
+impl<L: Lane> Work for TakingIn<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Looking { found, scene, ends, place, steps, stop, stretch, between, .. } = self;
+        let TakingIn { found, scene, ends, place, steps, stop, tape, between, .. } = self;
         let Found { seen, ride, .. } = found;
-        let widths = stretch.widths;
+        let widths = tape.widths;
         let last = scene.table.path.steps;
-        stretch.take(steps.len());
+        tape.take(steps.len());
         // What becomes of vehicles behind the bridge is none of its business.
         if place != Where::Tail {
-            let left = |step: usize| L::splat(if step < last { 1.0 } else { 0.0 });
-            ride.take(stretch, self.static_loads, left, place == Where::Bridge);
+            let left = |step: usize| if step < last { 1.0 } else { 0.0 };
+            ride.take(tape, self.static_loads, left, place == Where::Bridge);
         }
         if place == Where::Approach {
             return;
         }
         while let Some(next) = scene.table.stops.get(*stop).filter(|stop| stop.step < steps.end) {
-            let sides = [stretch.row(next.step - 1), stretch.row(next.step)];
+            let sides = [tape.row(next.step - 1), tape.row(next.step)];
             let before = (next.step > last).then(|| seen.stops.clone());
-            let moment = scene.table.moment(*stop, scene.rows, scene.look, self.moment);
+            let influence = scene.table.passing_influence(*stop, scene.rows, scene.look, self.influence);
             interpolate(next, sides, &widths, between);
-            at_stop(&mut seen.stops, scene.look, (next, *stop, moment), between);
+            at_stop(&mut seen.stops, scene.look, (next, *stop, influence), between);
             // Lanes that end with the last step on the bridge see nothing of the next.
             let ended = ends.last.less(L::splat(next.step as f64));
             for (peaks, before) in seen.stops.iter_mut().zip(before.into_iter().flatten()) {
@@ -374,39 +370,39 @@ impl<L: Lane> Work for Looking<'_, L> {
     }
 }
 
-/// The responses at the steps of a stretch being looked at.
-struct Surveying<'s, L> {
+/// The responses at the steps of a tape being searched.
+struct Searching<'s, L> {
     peaks: &'s mut [Peaks<L>],
     look: &'s Selection,
-    stretch: &'s Tape<L>,
+    tape: &'s Tape<L>,
     chunks: Option<&'s [Chunk]>,
     glanced: &'s mut Vec<[L; 2]>,
 }
 
-impl<L: Lane> Work for Surveying<'_, L> {
+impl<L: Lane> Work for Searching<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        survey(self.peaks, &self.look.rows, self.stretch, self.chunks, self.glanced);
+        search(self.peaks, &self.look.rows, self.tape, self.chunks, self.glanced);
     }
 }
 
-/// Looks at the responses at the steps of a stretch, with axles on the bridge or not.
+/// Looks at the responses at the steps of a tape, with axles on the bridge or not.
 fn look_at_steps<L: Lanes>(
     scene: &Scene<'_>,
     peaks: &mut [Peaks<L>],
-    stretch: &Tape<L>,
+    tape: &Tape<L>,
     loaded: bool,
     (glanced, own_chunks): (&mut Vec<[L; 2]>, &mut Vec<Chunk>),
 ) {
     let Scene { table, rows, look, .. } = *scene;
-    let steps = stretch.from..stretch.from + stretch.steps;
+    let steps = tape.from..tape.from + tape.steps;
     if L::SAMPLES == 1 && !table.laid_out {
-        let (mut all, places) = (Steps::<1>::default(), if loaded { table.places(steps) } else { &[] });
+        let (mut all, places) = (PlacedSteps::<1>::default(), if loaded { table.places(steps) } else { &[] });
         let (c, axles) = (rows.width(), if loaded { table.axles() } else { 0 });
-        all.begin(stretch.from, axles);
-        for (i, kept) in stretch.taken().enumerate() {
+        all.begin(tape.from, axles);
+        for (i, kept) in tape.taken().enumerate() {
             all.coordinates.extend(kept[..c].iter().map(|a| [a.get(0)]));
             let here = places[i * axles..][..axles].iter().zip(&kept[c..]);
             all.placed.extend(here.map(|(&place, load)| Placed::new(place, [load.get(0)])));
@@ -414,7 +410,7 @@ fn look_at_steps<L: Lanes>(
         return all.look(rows, look, [peaks]);
     }
     let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
-    L::dispatch(Surveying { peaks, look, stretch, chunks, glanced });
+    L::dispatch(Searching { peaks, look, tape, chunks, glanced });
 }
 
 /// Marches a group of samples through the table.
@@ -430,7 +426,7 @@ pub fn cross_group<L: Lanes>(
     let bodies = group.bodies.len();
     let widths = Widths::of(rows, table.axles(), bodies);
     let longest = longest(&widths);
-    let Scratch { stretch, glanced, between, moment, chunks: own_chunks } = scratch;
+    let Scratch { tape, glanced, between, influence, chunks: own_chunks } = scratch;
     let mut found = Found {
         // The bridge is at rest until an axle comes on to it.
         seen: Seen::beginning(look.rows.len(), table.first > 0),
@@ -442,9 +438,9 @@ pub fn cross_group<L: Lanes>(
     let static_loads = steppers.bridge.static_loads();
     let vibration = steppers.bridge.vibration();
     let mut traveller = Traveller { group, state, static_loads, vibration };
-    stretch.begin(widths, 0, 1);
+    tape.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
-    traveller.keep(stretch.row_mut(0)[0], &widths);
+    traveller.keep(tape.row_mut(0)[0], &widths);
     let (mut next, mut from) = (0, 0);
     while from <= traveller.group.ends.latest {
         let (place, end, most) = if from < table.first {
@@ -460,23 +456,23 @@ pub fn cross_group<L: Lanes>(
         if place != Where::Approach && traveller.state.modes.is_empty() {
             traveller.state.modes = vec![Coordinate::rest(); table.modes];
         }
-        if stretch.steps == 0 {
-            stretch.begin(widths, from, most.min((end - from).div_ceil(CHUNK)));
+        if tape.steps == 0 {
+            tape.begin(widths, from, most.min((end - from).div_ceil(CHUNK)));
         }
         let steppers = &mut *steppers;
         let with_vehicle = from..to.min(table.last() + 1);
         let alone = with_vehicle.end.max(from);
         if !with_vehicle.is_empty() {
             let stepping =
-                Stepping { traveller: &mut traveller, steppers, scene, stretch, place, steps: with_vehicle, stop };
+                Stepping { traveller: &mut traveller, steppers, scene, tape, place, steps: with_vehicle, stop };
             L::dispatch(stepping)?;
         }
         if place == Where::Tail {
             let reach = &mut found.reach;
-            L::dispatch(Swinging { traveller: &mut traveller, reach, stretch, steps: from..to, alone });
+            L::dispatch(Swinging { traveller: &mut traveller, reach, tape, steps: from..to, alone });
             stop.check().map_err(|_| Trouble::Interrupted)?;
         }
-        let looking = Looking {
+        let taking_in = TakingIn {
             found: &mut found,
             scene,
             static_loads: &traveller.static_loads,
@@ -484,18 +480,18 @@ pub fn cross_group<L: Lanes>(
             place,
             steps: from..to,
             stop: &mut next,
-            stretch,
+            tape,
             between,
-            moment,
+            influence,
         };
-        L::dispatch(looking);
-        if to == end || stretch.steps == most * CHUNK {
+        L::dispatch(taking_in);
+        if to == end || tape.steps == most * CHUNK {
             // On the approach the bridge is at rest.
             if place != Where::Approach {
                 let loaded = place == Where::Bridge;
-                look_at_steps(scene, &mut found.seen.steps, stretch, loaded, (glanced, own_chunks));
+                look_at_steps(scene, &mut found.seen.steps, tape, loaded, (glanced, own_chunks));
             }
-            stretch.go_on();
+            tape.go_on();
             if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
                 L::dispatch(Deciding { traveller: &mut traveller, found: &mut found, scene, step: to - 1 });
             }
@@ -551,30 +547,30 @@ pub fn rest<L: Lanes>(scene: &Scene<'_>, loads: &[L]) -> Seen<L> {
     let Scene { table, rows, look, .. } = *scene;
     let widths = Widths { felt: true, ..Widths::of(rows, table.axles(), 0) };
     let mut seen = Seen::beginning(look.rows.len(), table.first > 0);
-    let (mut own_chunks, mut glanced, mut stretch) = (Vec::new(), Vec::new(), Tape::new());
+    let (mut own_chunks, mut glanced, mut tape) = (Vec::new(), Vec::new(), Tape::new());
     let longest = longest(&widths);
     for start in (table.first..=table.path.steps).step_by(longest * CHUNK) {
         let end = (start + longest * CHUNK).min(table.path.steps + 1);
-        stretch.begin(widths, start, (end - start).div_ceil(CHUNK));
-        L::dispatch(Resting { scene, loads, steps: start..end, stretch: &mut stretch });
-        look_at_steps(scene, &mut seen.steps, &stretch, true, (&mut glanced, &mut own_chunks));
+        tape.begin(widths, start, (end - start).div_ceil(CHUNK));
+        L::dispatch(Resting { scene, loads, steps: start..end, tape: &mut tape });
+        look_at_steps(scene, &mut seen.steps, &tape, true, (&mut glanced, &mut own_chunks));
     }
     let mut own_moment = PassingInfluence::default();
     let mut then = vec![L::splat(0.0); widths.used()];
     for (number, stop) in table.stops.iter().enumerate() {
-        let moment = table.moment(number, rows, look, &mut own_moment);
-        write_at_rest(&moment.statics, loads, &mut then);
-        at_stop(&mut seen.stops, look, (stop, number, moment), &then);
+        let influence = table.passing_influence(number, rows, look, &mut own_moment);
+        write_at_rest(&influence.statics, loads, &mut then);
+        at_stop(&mut seen.stops, look, (stop, number, influence), &then);
     }
     seen
 }
 
-/// Static loads going over the bridge: a stretch of steps.
+/// Static loads going over the bridge, onto a tape.
 struct Resting<'s, L> {
     scene: &'s Scene<'s>,
     loads: &'s [L],
     steps: Range<usize>,
-    stretch: &'s mut Tape<L>,
+    tape: &'s mut Tape<L>,
 }
 
 impl<L: Lane> Work for Resting<'_, L> {
@@ -582,12 +578,12 @@ impl<L: Lane> Work for Resting<'_, L> {
 
     #[inline(always)]
     fn run(self) {
-        let Resting { scene, loads, steps, stretch } = self;
+        let Resting { scene, loads, steps, tape } = self;
         let mut scratch = Vec::new();
         for step in steps.clone() {
-            let [_, row] = stretch.row_mut(step);
+            let [_, row] = tape.row_mut(step);
             write_at_rest(scene.table.statics(step, scene.rows, &mut scratch), loads, row);
         }
-        stretch.take_all(steps.len());
+        tape.take_all(steps.len());
     }
 }
