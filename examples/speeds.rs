@@ -21,7 +21,7 @@ fn main() -> Result<(), Error> {
     println!("speed [m/s]   largest moment [kN m]   impact factor");
     for speed in [5.0, 10.0, 15.0, 20.0, 25.0, 30.0] {
         let crossed = analysis.cross(&lorry, &Settings::at_speed(speed), stop)?;
-        let moments = analysis.envelope_of(&crossed, Quantity::Moment);
+        let moments = analysis.envelope_of(&crossed, Quantity::Moment, StopToken::NEVER)?;
         let [dynamic, at_rest] = [&moments.dynamic, &moments.at_rest].map(|extremes| extremes.max[0].value);
         println!("{speed:11}   {:21.1}   {:13.4}", dynamic / 1e3, dynamic / at_rest);
     }

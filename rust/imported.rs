@@ -20,7 +20,8 @@ use crate::error::{Error, finite, positive};
 use crate::modal_bridge::narrowest_panel;
 use crate::modes::Modes;
 use crate::recovery::ModalFactors;
-use crate::statics::influence::{Quantity, Responses};
+use crate::statics::influence::Responses;
+use crate::statics::quantity::{At, Quantity};
 
 /// A bridge given by lines along the path of the wheels.
 #[derive(Debug, Clone)]
@@ -128,8 +129,13 @@ impl Given {
             Motion::Modes { rho, .. } => {
                 let by_masses =
                     (!self.masses.is_empty()).then(|| ModalFactors::of_masses(responses, &self.masses, modes, damping));
-                let rows: Vec<usize> = self.responses.numbers_at(chosen).collect();
-                let rho = Mat::from_fn(rows.len(), modes.len(), |r, i| rho[(rows[r], i)]);
+                let number = |r: usize| {
+                    let (quantity, own) = responses.quantity_of(r);
+                    let own = if quantity.at() == At::Sections { chosen[own] } else { own };
+                    self.responses.range(quantity).nth(own)
+                };
+                let rho =
+                    Mat::from_fn(responses.len(), modes.len(), |r, i| number(r).map_or(0.0, |known| rho[(known, i)]));
                 let mut factors = ModalFactors::of_responses(&rho, &modes.omega, damping.1);
                 // C as a matrix acts on the masses.
                 if let (Some(by_masses), Damping::Viscous(_)) = (by_masses, damping.0) {
@@ -170,12 +176,12 @@ impl Given {
 
     /// The influence line of a response, by its name, at a section or support [m].
     pub fn line(&self, quantity: &str, at: f64) -> Result<&Line, Error> {
-        let known: Vec<&str> = Quantity::ALL
+        let known: Vec<&str> = Quantity::USUAL
             .iter()
             .filter(|&&q| !self.missing.contains(&q) && !self.responses.range(q).is_empty())
             .map(|q| q.name())
             .collect();
-        let Some(quantity) = Quantity::ALL.into_iter().find(|q| q.name() == quantity && known.contains(&quantity))
+        let Some(quantity) = Quantity::USUAL.into_iter().find(|q| q.name() == quantity && known.contains(&quantity))
         else {
             let allowed = format!("this bridge is given with {} only", known.join(", "));
             return Err(Error::input("quantity", format!("\"{quantity}\""), allowed));

@@ -50,7 +50,7 @@
 //!
 //! // On a smooth road. At rest the moment is largest with one axle at midspan and the other 4 m away: 5 P + 3 P.
 //! let crossed = analysis.cross(&lorry, &Settings::at_speed(20.0), stop)?;
-//! let moments = analysis.envelope_of(&crossed, Quantity::Moment);
+//! let moments = analysis.envelope_of(&crossed, Quantity::Moment, stop)?;
 //! let [dynamic, at_rest] = [&moments.dynamic, &moments.at_rest].map(|extremes| extremes.max[0].value);
 //! assert!((at_rest / (8.0 * 10e3 * 9.80665) - 1.0).abs() < 1e-9);
 //! assert!((1.0..1.1).contains(&(dynamic / at_rest)));

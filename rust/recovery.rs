@@ -62,9 +62,11 @@ pub struct Rows {
     responses: usize,
     mesh: Mesh,
     recovery: Recovery,
+    /// Whether the factors multiply A, Ȧ and Ä.
+    orders: [bool; 3],
     /// Number of coordinates that the factors multiply.
     width: usize,
-    /// Factors of A, or of Ȧ and Ä: block by block, coordinate by coordinate.
+    /// Factors of A, Ȧ and Ä as far as they are asked for: block by block, coordinate by coordinate.
     factors: Vec<Block>,
     /// The four coefficients of g (or IL), panel by panel, block by block.
     lines: Vec<[Block; 4]>,
@@ -132,19 +134,32 @@ impl Rows {
         let (n, m) = (responses.len(), omega.len());
         let ModalFactors { inertia, damping } = factors;
         let rho = |r: usize, i: usize| omega[i].powi(2) * inertia[(r, i)];
-        let blocks = |width: usize, value: &dyn Fn(usize, usize) -> f64| -> Vec<Block> {
-            let pairs = (0..n.div_ceil(WIDTH)).flat_map(|b| (0..width).map(move |i| (b, i)));
-            pairs.map(|(b, i)| block(n, b, |r| value(r, i))).collect()
-        };
-        let (width, factors) = match recovery {
-            Recovery::ForceSummation | Recovery::Superposition => (m, blocks(m, &rho)),
-            Recovery::ForceSummationByRates => {
-                // [KTN73] Eq. 6: P̃ = −(MΦÄ + CΦȦ).
-                (2 * m, blocks(2 * m, &|r, i| if i < m { -damping[(r, i)] } else { -inertia[(r, i - m)] }))
+        let mut orders = [false; 3];
+        for quantity in responses.quantities() {
+            match (quantity.order(), recovery) {
+                (0, Recovery::ForceSummationByRates) => (orders[1], orders[2]) = (true, true),
+                (order, _) => orders[order] = true,
             }
+        }
+        let of_order = |r: usize, order: usize, i: usize| match (responses.quantity_of(r), order, recovery) {
+            // Deck motion is that of the modes.
+            ((quantity, number), order, _) if quantity.order() > 0 => match quantity.order() == order {
+                true => mode_lines[i].at_node(responses.sections()[number]),
+                false => 0.0,
+            },
+            (_, 0, Recovery::ForceSummation | Recovery::Superposition) => rho(r, i),
+            // [KTN73] Eq. 6: P̃ = −(MΦÄ + CΦȦ).
+            (_, 1, Recovery::ForceSummationByRates) => -damping[(r, i)],
+            (_, 2, Recovery::ForceSummationByRates) => -inertia[(r, i)],
+            _ => 0.0,
         };
+        let columns: Vec<(usize, usize)> =
+            (0..3).filter(|&order| orders[order]).flat_map(|order| (0..m).map(move |i| (order, i))).collect();
+        let blocks = (0..n.div_ceil(WIDTH)).flat_map(|b| columns.iter().map(move |&column| (b, column)));
+        let factors = blocks.map(|(b, (order, i))| block(n, b, |r| of_order(r, order, i))).collect();
+        let width = columns.len();
         let static_shapes: Vec<Line> = match recovery {
-            Recovery::ForceSummation => {
+            Recovery::ForceSummation if orders[0] => {
                 mode_lines.iter().zip(omega).map(|(line, w)| line.clone().scaled(w.powi(-2))).collect()
             }
             _ => Vec::new(),
@@ -162,7 +177,7 @@ impl Rows {
                 }
             }
         }
-        Rows { responses: n, mesh: mesh.clone(), recovery, width, factors, lines, static_shapes }
+        Rows { responses: n, mesh: mesh.clone(), recovery, orders, width, factors, lines, static_shapes }
     }
 
     /// Number of responses.
@@ -190,14 +205,26 @@ impl Rows {
         if self.recovery == Recovery::Superposition { 0.0 } else { 1.0 }
     }
 
-    /// Number of coordinates that the factors multiply: A, or Ȧ and Ä.
+    /// Number of coordinates that the factors multiply.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Whether the coordinates are Ȧ and Ä, not A.
+    /// Whether they are A, Ȧ and Ä.
+    pub fn orders(&self) -> [bool; 3] {
+        self.orders
+    }
+
+    /// Whether forces on the masses follow from Ȧ and Ä.
     pub fn by_rates(&self) -> bool {
         self.recovery == Recovery::ForceSummationByRates
+    }
+
+    /// Factor of a mode's coordinate or its derivative in a response.
+    pub fn factor_of(&self, response: usize, order: usize, mode: usize) -> f64 {
+        let modes = self.width / self.orders.iter().filter(|&&used| used).count();
+        let before = self.orders[..order].iter().filter(|&&used| used).count();
+        if self.orders[order] { self.factor(response, before * modes + mode) } else { 0.0 }
     }
 
     /// Factor of a coordinate in a response.
@@ -210,6 +237,14 @@ impl Rows {
         let [c0, c1, c2, c3] = &self.lines[panel * self.blocks() + response / WIDTH];
         let i = response % WIDTH;
         value([c0[i], c1[i], c2[i], c3[i]], f)
+    }
+
+    /// First and second derivative along the path of the influence of an axle load on a response [1/m, 1/m²].
+    pub fn derivatives_of(&self, response: usize, (panel, f): (usize, f64)) -> [f64; 2] {
+        let cubics = &self.lines[panel * self.blocks() + response / WIDTH];
+        let [_, b, c, d] = [0, 1, 2, 3].map(|power| cubics[power][response % WIDTH]);
+        let width = self.mesh.width(panel);
+        [(b + f * (2.0 * c + f * 3.0 * d)) / width, (2.0 * c + f * 6.0 * d) / (width * width)]
     }
 
     /// Influence of loads at these places on a response, zero off the bridge.

@@ -1,7 +1,8 @@
 //! Which responses are looked at, equal rows once, and the sections and ends where a passing axle can make an extreme.
 
 use crate::recovery::{Place, Rows};
-use crate::statics::influence::{Quantity, Responses};
+use crate::statics::influence::Responses;
+use crate::statics::quantity::{At, Quantity};
 
 /// A row that is evaluated.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +41,8 @@ pub struct Selection {
     pub row_of: Vec<usize>,
     /// The first of the chosen responses that each row stands for.
     pub first_of_row: Vec<usize>,
-    /// Whether each chosen response is a deflection.
-    pub deflections: Vec<bool>,
+    /// The kind of each chosen response.
+    pub quantities: Vec<Quantity>,
     /// By response, the row that stands for it, if it is looked at.
     row_for: Vec<Option<usize>>,
     /// Where extremes are looked for as an axle passes, from left to right.
@@ -53,7 +54,6 @@ pub struct Selection {
 impl Selection {
     /// At all responses of some quantities.
     pub fn new(rows: &Rows, responses: &Responses, quantities: &[Quantity]) -> Self {
-        let deflections = responses.range(Quantity::Deflection);
         let ends = [0, rows.mesh().panels()];
         let sections = responses.sections().len();
         let mut look = Selection {
@@ -61,7 +61,7 @@ impl Selection {
             rows: Vec::new(),
             row_of: Vec::new(),
             first_of_row: Vec::new(),
-            deflections: Vec::new(),
+            quantities: Vec::new(),
             row_for: vec![None; responses.len()],
             marks: Vec::new(),
             asked: Vec::new(),
@@ -89,7 +89,7 @@ impl Selection {
                     look.rows.push(Row { response, factors, turned });
                 }
                 look.chosen.push(response);
-                look.deflections.push(deflections.contains(&response));
+                look.quantities.push(quantity);
             }
         }
         look.find_marks(rows, responses);
@@ -110,8 +110,9 @@ impl Selection {
         let count = sections.len();
         // Of a section deflection, moment and both shears: what else is looked at must not matter. On an end all.
         let own = |section: usize| {
-            let of_section = Quantity::OF_SECTIONS.map(|quantity| responses.range(quantity).start + section);
-            let mut rows: Vec<usize> = of_section.into_iter().filter_map(|response| self.row(response)).collect();
+            let of_section = responses.quantities().filter(|quantity| quantity.at() == At::Sections);
+            let responses = of_section.map(|quantity| responses.range(quantity).start + section);
+            let mut rows: Vec<usize> = responses.filter_map(|response| self.row(response)).collect();
             rows.dedup();
             rows
         };
@@ -127,7 +128,8 @@ impl Selection {
                 _ => (Quantity::ShearLeft, 1.0),
             };
             let section = sections.iter().position(|&s| s == node)?;
-            Some((self.row(responses.range(quantity).start + section)?, sign))
+            let response = responses.range(quantity).nth(section)?;
+            Some((self.row(response)?, sign))
         };
         let marks = places.into_iter().map(|(node, asked)| {
             let (left, right) = (node.checked_sub(1).map(|panel| (panel, 1.0)), (node < last).then_some((node, 0.0)));

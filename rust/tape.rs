@@ -4,6 +4,7 @@
 use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::recovery::Rows;
+use crate::statics::quantity::{Quantity, Unit};
 use crate::step::vibration::Reach;
 
 /// Steps whose responses are bounded together.
@@ -27,14 +28,14 @@ pub struct Widths {
     pub bodies: usize,
     /// Whether responses feel the loads; by superposition they do not.
     pub felt: bool,
-    /// Whether the coordinates are Ȧ and Ä, not A.
-    pub rates: bool,
+    /// Whether the coordinates are A, Ȧ and Ä.
+    pub orders: [bool; 3],
 }
 
 impl Widths {
     /// Of what these rows multiply.
     pub fn of(rows: &Rows, axles: usize, bodies: usize) -> Self {
-        Widths { coordinates: rows.width(), axles, bodies, felt: rows.weight() == 1.0, rates: rows.by_rates() }
+        Widths { coordinates: rows.width(), axles, bodies, felt: rows.weight() == 1.0, orders: rows.orders() }
     }
 
     /// Numbers that responses follow from.
@@ -47,7 +48,8 @@ impl Widths {
     /// axle's own load jumps too.
     #[inline(always)]
     pub fn jumps(&self) -> usize {
-        if self.rates { self.coordinates / 2 } else { self.coordinates }
+        let orders = self.orders.iter().filter(|&&used| used).count();
+        if self.orders[2] { self.coordinates / orders * (orders - 1) } else { self.coordinates }
     }
 
     /// Numbers of a step.
@@ -77,18 +79,28 @@ impl Widths {
         mode: impl Fn(usize) -> Coordinate<L>,
         factors: Option<&BridgeFactors<L>>,
     ) {
-        let Widths { coordinates, axles, felt, rates, .. } = *self;
+        let Widths { coordinates, axles, felt, orders: [values, velocities, accelerations], .. } = *self;
         if modes == 0 {
             row[..coordinates].fill(L::splat(0.0));
-        } else if rates {
-            let (velocities, accelerations) = row[..coordinates].split_at_mut(coordinates / 2);
-            for (m, (v, a)) in velocities.iter_mut().zip(accelerations).enumerate() {
-                *v = factors.map_or(mode(m).v, |f| f.rates * mode(m).v);
-                *a = mode(m).a;
-            }
-        } else {
-            for (m, a) in row[..coordinates].iter_mut().enumerate() {
+        }
+        let mut left = &mut row[..if modes == 0 { 0 } else { coordinates }];
+        if values && modes > 0 {
+            let (own, rest) = left.split_at_mut(modes);
+            for (m, a) in own.iter_mut().enumerate() {
                 *a = factors.map_or(mode(m).x, |f| f.coordinates * mode(m).x);
+            }
+            left = rest;
+        }
+        if velocities && modes > 0 {
+            let (own, rest) = left.split_at_mut(modes);
+            for (m, a) in own.iter_mut().enumerate() {
+                *a = factors.map_or(mode(m).v, |f| f.rates * mode(m).v);
+            }
+            left = rest;
+        }
+        if accelerations {
+            for (m, a) in left.iter_mut().enumerate() {
+                *a = mode(m).a;
             }
         }
         if !felt {
@@ -104,6 +116,17 @@ pub struct BridgeFactors<L> {
     pub coordinates: L,
     /// On Ȧ: how the damping matrix grows.
     pub rates: L,
+}
+
+impl BridgeFactors<f64> {
+    /// How many times too large a response comes out.
+    pub fn of(&self, quantity: Quantity) -> f64 {
+        match (quantity.unit(), quantity.order()) {
+            (Unit::Metre | Unit::Radian, 0) => self.coordinates,
+            (_, 1) => self.rates,
+            _ => 1.0,
+        }
+    }
 }
 
 impl<L: Lane> BridgeFactors<L> {
@@ -149,7 +172,7 @@ pub struct Kept<'s, L> {
 impl<L: Lane> Tape<L> {
     /// Nothing yet.
     pub fn new() -> Self {
-        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true, rates: false };
+        let widths = Widths { coordinates: 0, axles: 0, bodies: 0, felt: true, orders: [true, false, false] };
         Tape { widths, from: 0, steps: 0, rows: Vec::new(), limits: Vec::new(), parts: Vec::new() }
     }
 

@@ -93,7 +93,7 @@ fn extremes_converge_at_second_order() {
             for quantity in [Quantity::Deflection, Quantity::Moment, Quantity::ShearLeft] {
                 let extremes = |count: usize| -> Vec<f64> {
                     let run = kishan_in_steps(&vehicle, drive.clone(), 1.0 / 6.0, count, &[]);
-                    let dynamic = run.analysis.envelope_of(&run.outcome, quantity).dynamic;
+                    let dynamic = run.analysis.envelope_of(&run.outcome, quantity, StopToken::NEVER).unwrap().dynamic;
                     dynamic.max.iter().chain(&dynamic.min).map(|e| e.value).collect()
                 };
                 let exact = extremes(40_000);

@@ -6,6 +6,7 @@ use spanwise::bridge::{Bridge, Stations};
 use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{ForceSummation, ForceSummationByRates};
 use spanwise::statics::Quantity;
+use spanwise::stop_token::StopToken;
 
 /// Two evaluations of one shear, relative to its largest value.
 const ROUNDING: f64 = 1e-10;
@@ -32,7 +33,7 @@ fn extremes_settle_with_the_step() {
             let settings = Settings { step: Some(step), ..Settings::at_speed(22.86) };
             let sections = [0.0, 2.5, 15.0, 27.5, 30.0];
             let run = run(&overhangs(), &kishan_vehicle(), &settings, 3, &undamped(), recovery, &sections).unwrap();
-            run.analysis.envelope_of(&run.outcome, Quantity::Moment).dynamic.min[3].value
+            run.analysis.envelope_of(&run.outcome, Quantity::Moment, StopToken::NEVER).unwrap().dynamic.min[3].value
         };
         let fine = hogging(1e-5);
         for (halvings, step) in [5e-4, 2.5e-4, 1.25e-4, 6.25e-5].into_iter().enumerate() {
@@ -78,7 +79,7 @@ fn an_axle_on_the_tip() {
         let run =
             run(&bridge, &kishan_vehicle(), &settings, 4, &undamped(), ForceSummation, &[0.0, 5.0, 10.0]).unwrap();
         let load = run.outcome.history.static_loads[0];
-        let shear = |quantity| run.analysis.envelope_of(&run.outcome, quantity).at_rest;
+        let shear = |quantity| run.analysis.envelope_of(&run.outcome, quantity, StopToken::NEVER).unwrap().at_rest;
         let found = if mirrored { shear(Quantity::ShearRight).min[0] } else { shear(Quantity::ShearLeft).max[2] };
         let expected = if mirrored { -load } else { load };
         assert!((found.value / expected - 1.0).abs() <= ROUNDING, "{found:?}, expected {expected:e}");

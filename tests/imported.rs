@@ -21,7 +21,7 @@ fn apart(one: &Analysis, other: &Analysis, quantities: &[Quantity]) -> f64 {
     let [a, b] = [one, other].map(|analysis| analysis.cross(&kishan_vehicle(), &settings, StopToken::NEVER).unwrap());
     let of = |quantity: &Quantity| {
         let [a, b] = [(one, &a), (other, &b)].map(|(analysis, outcome)| {
-            let dynamic = analysis.envelope_of(outcome, *quantity).dynamic;
+            let dynamic = analysis.envelope_of(outcome, *quantity, StopToken::NEVER).unwrap().dynamic;
             dynamic.max.iter().chain(&dynamic.min).map(|extreme| extreme.value).collect::<Vec<f64>>()
         });
         assert_eq!(a.len(), b.len(), "{quantity:?}");

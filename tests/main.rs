@@ -7,6 +7,7 @@ mod bridge;
 mod catalogue;
 mod contact;
 mod crossing;
+mod deck_motion;
 mod energy;
 mod ensemble_contract;
 mod ensemble_extremes;

@@ -10,6 +10,7 @@ use spanwise::modes::Modes;
 use spanwise::passage::{Settings, Tail};
 use spanwise::recovery::Recovery::{self, ForceSummation, ForceSummationByRates, Superposition};
 use spanwise::statics::{Quantity, Restraint};
+use spanwise::stop_token::StopToken;
 
 /// Two ways to the same number differ by rounding, relative to its largest value in the run.
 const ROUNDING: f64 = 1e-10;
@@ -270,8 +271,11 @@ fn fewer_modes_suffice() {
         let (settings, damping) = (Settings::at_speed(speed), Damping::Ratios(vec![0.02]));
         let sections = [0.0, 0.5 * span, span];
         let run = run(&bridge, &kishan_vehicle(), &settings, modes, &damping, recovery, &sections).unwrap();
-        let moment = run.analysis.envelope_of(&run.outcome, Quantity::Moment).dynamic.max[1].value;
-        let shear = run.analysis.envelope_of(&run.outcome, Quantity::ShearRight).dynamic.max[0].value;
+        let moment =
+            run.analysis.envelope_of(&run.outcome, Quantity::Moment, StopToken::NEVER).unwrap().dynamic.max[1].value;
+        let shear = run.analysis.envelope_of(&run.outcome, Quantity::ShearRight, StopToken::NEVER).unwrap().dynamic.max
+            [0]
+        .value;
         [moment, shear]
     };
     let [mut summed, mut superposed] = [[0.0_f64; 2]; 2];

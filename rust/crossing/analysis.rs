@@ -1,10 +1,12 @@
 //! A bridge prepared for crossings, its modes, influence lines and recovery worked out once; and what one crossing
 //! gives.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::bridge::Bridge;
-use crate::bridge::cubics::{COINCIDENT, check_lines};
+use crate::bridge::cubics::{COINCIDENT, Line, check_lines};
 use crate::crossing::cross;
 use crate::crossing::envelope::{Envelope, axle_loads};
 use crate::crossing::history::History;
@@ -22,7 +24,8 @@ use crate::passage::settings::Settings;
 use crate::recovery::{ModalFactors, Recovery, Rows};
 use crate::selection::Selection;
 use crate::statics::flexibility::Flexibility;
-use crate::statics::influence::{Quantity, Responses};
+use crate::statics::influence::Responses;
+use crate::statics::quantity::{At, Quantity};
 use crate::statistics::Ride;
 use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
@@ -48,10 +51,28 @@ pub struct Analysis {
     pub missing: Vec<Quantity>,
     /// How they follow from modal states.
     pub rows: Rows,
+    /// What other responses can be made of.
+    source: Arc<Source>,
     /// The distinct ones among them, all of them looked at.
     pub look: Selection,
     /// The same without vehicles on the bridge.
     pub free: FreeRows,
+}
+
+/// What an analysis was prepared from.
+#[derive(Debug)]
+struct Source {
+    preparation: Preparation,
+    subject: Subject,
+    /// The modes along the bridge.
+    lines: Vec<Line>,
+}
+
+/// A bridge, described or given; of one that is given with the numbers of the sections looked at.
+#[derive(Debug)]
+enum Subject {
+    Described(Bridge),
+    Given(Given, Vec<usize>),
 }
 
 /// How a bridge is prepared for crossings: undamped, looked at where it is interesting, by force summation, unless the user
@@ -93,7 +114,7 @@ impl Preparation {
 
     /// A described bridge in its `modes`; `stop` is asked now and then.
     pub fn of(&self, bridge: &Bridge, modes: Modes, stop: StopToken<'_>) -> Result<Analysis, Error> {
-        let Preparation { damping, sections, recovery } = self;
+        let Preparation { damping, sections, .. } = self;
         let _mode = Standard::set();
         let sections = match sections {
             Some(sections) => checked_sections(sections, bridge.length())?,
@@ -116,47 +137,72 @@ impl Preparation {
         let flexibility = Flexibility::new(bridge, &sections)?;
         let lines = modes.lines(bridge, &flexibility);
         let model = ModalBridge::new(bridge, &flexibility, &modes, &lines, damping)?;
-        let responses = Responses::new(&flexibility, bridge, &sections, stop)?;
-        let mesh = flexibility.mesh();
-        let masses: Vec<(usize, f64)> = bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
-        let factors = ModalFactors::of_masses(&responses, &masses, &modes, (damping, &model.damping));
-        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, mesh, *recovery);
-        Ok(Analysis::new(sections, modes, model, responses, Vec::new(), rows))
+        let responses = Responses::new(&flexibility, bridge, &sections, &Quantity::USUAL, stop)?;
+        let source = Source { preparation: self.clone(), subject: Subject::Described(bridge.clone()), lines };
+        let source = Arc::new(source);
+        Ok(Analysis::new(source, sections, modes, model, responses, Vec::new()))
     }
 
     /// A bridge given by its flexibility or its modes, in `count` modes.
     pub fn of_given(&self, given: &Given, count: usize) -> Result<Analysis, Error> {
-        let Preparation { damping, sections, recovery } = self;
+        let Preparation { damping, sections, .. } = self;
         let _mode = Standard::set();
         let (modes, lines) = given.modes(count)?;
         let (sections, chosen) = given.chosen(sections.as_deref())?;
         check_memory(chosen.len(), count, given.responses().len(), given.mesh().panels())?;
         let responses = given.responses().of_sections(&chosen);
-        let in_modes = given.damping(&modes, damping)?;
-        let factors = given.factors(&responses, &chosen, &modes, (damping, &in_modes));
-        let rows = Rows::new(&responses, &factors, &modes.omega, &lines, given.mesh(), *recovery);
         let model = ModalBridge {
             omega: modes.omega.clone(),
             shapes: ModeShapes::new(given.mesh(), &lines),
-            damping: in_modes,
+            damping: given.damping(&modes, damping)?,
             narrowest_panel: given.narrowest_panel(),
         };
-        Ok(Analysis::new(sections, modes, model, responses, given.missing().to_vec(), rows))
+        let source = Source { preparation: self.clone(), subject: Subject::Given(given.clone(), chosen), lines };
+        let missing = given.missing().iter().copied().chain([Quantity::Slope]).collect();
+        Ok(Analysis::new(Arc::new(source), sections, modes, model, responses, missing))
     }
 }
 
 impl Analysis {
     fn new(
+        source: Arc<Source>,
         sections: Vec<f64>,
         modes: Modes,
         model: ModalBridge,
         responses: Responses,
         missing: Vec<Quantity>,
-        rows: Rows,
     ) -> Self {
-        let look = Selection::new(&rows, &responses, &Quantity::ALL);
+        let Source { preparation: Preparation { damping, recovery, .. }, subject, lines } = &*source;
+        let mesh = model.shapes.mesh();
+        let in_both = (damping, &model.damping);
+        let factors = match subject {
+            Subject::Described(bridge) => {
+                let masses: Vec<(usize, f64)> =
+                    bridge.stations().iter().map(|s| (mesh.node_at(s.at), s.mass)).collect();
+                ModalFactors::of_masses(&responses, &masses, &modes, in_both)
+            }
+            Subject::Given(given, chosen) => given.factors(&responses, chosen, &modes, in_both),
+        };
+        let rows = Rows::new(&responses, &factors, &modes.omega, lines, mesh, *recovery);
+        let quantities: Vec<Quantity> = responses.quantities().collect();
+        let look = Selection::new(&rows, &responses, &quantities);
         let free = FreeRows::new(&rows, &responses, &model).of(look.rows.iter().map(|row| row.response));
-        Analysis { sections, modes, model, responses, missing, rows, look, free }
+        Analysis { sections, modes, model, responses, missing, rows, source, look, free }
+    }
+
+    /// The same bridge, looked at for other kinds of response.
+    pub fn looking_at(&self, quantities: &[Quantity], stop: StopToken<'_>) -> Result<Self, Error> {
+        let _mode = Standard::set();
+        let known = |quantity: &Quantity| quantity.order() > 0 || self.responses.quantities().any(|q| q == *quantity);
+        let responses = match &self.source.subject {
+            Subject::Described(bridge) if !quantities.iter().all(known) => {
+                let flexibility = Flexibility::new(bridge, &self.sections)?;
+                Responses::new(&flexibility, bridge, &self.sections, quantities, stop)?
+            }
+            _ => self.responses.of_quantities(quantities, self.model.shapes.mesh()),
+        };
+        let (source, sections, modes) = (Arc::clone(&self.source), self.sections.clone(), self.modes.clone());
+        Ok(Analysis::new(source, sections, modes, self.model.clone(), responses, self.missing.clone()))
     }
 
     /// One crossing by one vehicle.
@@ -172,11 +218,7 @@ impl Analysis {
         let envelope = observer.conclude(&history, stop)?;
         let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
         let rides = history.rides(&bodies, self.rows.mesh(), stop)?;
-        let bounds = history.reach.as_ref().map(|reach| {
-            let of_rows = self.free.bounds(reach);
-            self.look.row_of.iter().map(|&row| of_rows[row]).collect()
-        });
-        Ok(Outcome { axle_loads: axle_loads(&history, &rides), history, envelope, rides, bounds })
+        Ok(Outcome { axle_loads: axle_loads(&history, &rides), history, envelope, rides })
     }
 
     /// An outcome that has travelled, if it is one of this bridge.
@@ -191,6 +233,14 @@ impl Analysis {
         Ok(outcome)
     }
 
+    /// How many responses of a quantity there are.
+    pub fn count(&self, quantity: Quantity) -> usize {
+        match quantity.at() {
+            At::Sections => self.sections.len(),
+            At::Supports | At::Clamps => self.responses.range(quantity).len(),
+        }
+    }
+
     /// The responses of one quantity at every instant, dynamic and static, row by row.
     pub fn histories(
         &self,
@@ -202,17 +252,57 @@ impl Analysis {
             let allowed = "this bridge was given without influence lines of it";
             return Err(Error::input("quantity", quantity.name(), allowed));
         }
-        let range = self.responses.range(quantity);
-        let bytes = 2.0 * size_of::<f64>() as f64 * outcome.history.len() as f64 * range.len() as f64;
-        let size = format!("{} positions at {} instants", range.len(), outcome.history.len());
+        let count = self.count(quantity);
+        let bytes = 2.0 * size_of::<f64>() as f64 * outcome.history.len() as f64 * count as f64;
+        let size = format!("{count} positions at {} instants", outcome.history.len());
         let mend = "use fewer sections or a longer step";
         memory::check("sections", size, bytes, MAX_HISTORY_BYTES, "histories there", mend)?;
         let _mode = Standard::set();
-        outcome.history.responses(&self.rows, range, stop)
+        if self.responses.quantities().any(|own| own == quantity) {
+            return outcome.history.responses(&self.rows, self.responses.range(quantity), stop);
+        }
+        let other = self.looking_at(&[quantity], stop)?;
+        outcome.history.responses(&other.rows, other.responses.range(quantity), stop)
+    }
+
+    /// The quasi-static part of the deck's acceleration at every instant, which is that of the modes left out: see
+    /// [`History::quasi_static_acceleration`]. Only by force summation.
+    pub fn quasi_static_acceleration(&self, outcome: &Outcome, stop: StopToken<'_>) -> Result<Vec<f64>, Error> {
+        if self.rows.weight() == 0.0 || self.rows.by_rates() {
+            let allowed = "only with recovery = \"force-summation\", which adds what the modes left out carry";
+            return Err(Error::input("quasi_static", "true", allowed));
+        }
+        let _mode = Standard::set();
+        outcome.history.quasi_static_acceleration(&self.rows, self.responses.range(Quantity::Deflection), stop)
+    }
+
+    /// Largest magnitude of every response of a quantity that free vibration after the end can reach; none where a vehicle
+    /// stands on the bridge.
+    pub fn bounds_of(
+        &self,
+        outcome: &Outcome,
+        quantity: Quantity,
+        stop: StopToken<'_>,
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let Some(reach) = &outcome.history.reach else { return Ok(None) };
+        if !self.responses.quantities().any(|own| own == quantity) {
+            return self.looking_at(&[quantity], stop)?.bounds_of(outcome, quantity, stop);
+        }
+        let of_rows = self.free.bounds(reach);
+        Ok(Some(self.responses.range(quantity).map(|response| of_rows[self.look.row_of[response]]).collect()))
     }
 
     /// Extremes of one quantity; shears on both sides of a section count together.
-    pub fn envelope_of(&self, outcome: &Outcome, quantity: Quantity) -> Envelope {
+    pub fn envelope_of(&self, outcome: &Outcome, quantity: Quantity, stop: StopToken<'_>) -> Result<Envelope, Error> {
+        let _mode = Standard::set();
+        if !self.responses.quantities().any(|own| own == quantity) {
+            let Analysis { rows, look, free, .. } = &self.looking_at(&[quantity], stop)?;
+            let mut envelope = Observer::new(rows, look, free, None).conclude(&outcome.history, stop)?;
+            if self.missing.contains(&quantity) {
+                envelope.forget();
+            }
+            return Ok(envelope);
+        }
         let of = |quantity| {
             let mut envelope = outcome.envelope.of(self.responses.range(quantity));
             if self.missing.contains(&quantity) {
@@ -220,10 +310,10 @@ impl Analysis {
             }
             envelope
         };
-        match quantity {
+        Ok(match quantity {
             Quantity::ShearLeft | Quantity::ShearRight => of(Quantity::ShearLeft).merged(&of(Quantity::ShearRight)),
             other => of(other),
-        }
+        })
     }
 }
 
@@ -238,9 +328,6 @@ pub struct Outcome {
     pub axle_loads: Envelope,
     /// Contact forces and accelerations of each vehicle.
     pub rides: Vec<Ride<f64>>,
-    /// Largest magnitude of every response that free vibration after the end can reach; none where a vehicle stands on
-    /// the bridge.
-    pub bounds: Option<Vec<f64>>,
 }
 
 impl Outcome {

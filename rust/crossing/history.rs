@@ -195,6 +195,35 @@ impl History {
         Ok(filling.out)
     }
 
+    /// The part of the deck's acceleration that the modes left out have as the loads, held as they are, move on, at every
+    /// step and section: Σ P (v² g″ + a g′) of the deflections in `rows` [m/s²], docs/theory.md (M2).
+    pub fn quasi_static_acceleration(
+        &self,
+        rows: &Rows,
+        deflections: Range<usize>,
+        stop: StopToken<'_>,
+    ) -> Result<Vec<f64>, Error> {
+        let (mut all, mut places) = (Vec::with_capacity(self.len() * deflections.len()), Vec::new());
+        for step in 0..self.len() {
+            self.places(step, rows, &mut places);
+            let first = all.len();
+            all.resize(first + deflections.len(), 0.0);
+            for VehicleColumns { axles, motion, direction, .. } in &self.vehicles {
+                let [v, a] = [2, 1].map(|back| self.motion[step * self.motion_width() + motion.end - back]);
+                for axle in axles.clone() {
+                    let Some(place) = places[axle] else { continue };
+                    let load = self.loads[step * self.axles + axle];
+                    for (sum, response) in all[first..].iter_mut().zip(deflections.clone()) {
+                        let [slope, curvature] = rows.derivatives_of(response, place);
+                        *sum += load * (v * v * curvature + direction * a * slope);
+                    }
+                }
+            }
+            stop.check()?;
+        }
+        Ok(all)
+    }
+
     /// Where the axles stand at the end of a step; `places` are those of another, from which it may not be far.
     pub fn places(&self, step: usize, rows: &Rows, places: &mut Vec<Place>) {
         places.resize(self.axles, None);
@@ -228,7 +257,8 @@ impl History {
     pub fn rides(&self, bodies: &[Vec<Vec<f64>>], mesh: &Mesh, stop: StopToken<'_>) -> Result<Vec<Ride<f64>>, Error> {
         let mut tape = Tape::new();
         let rides = self.vehicles.iter().zip(bodies).map(|(VehicleColumns { axles, motion, .. }, bodies)| {
-            let widths = Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, rates: false };
+            let widths =
+                Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, orders: [false; 3] };
             let mut ride = Ride::nothing(axles.len(), bodies.len());
             let there = self.on_bridge(axles, mesh);
             let (before, after) = (0..there.start, there.end..self.last_on + 1);

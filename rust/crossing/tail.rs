@@ -6,7 +6,8 @@ use crate::error::Error;
 use crate::lane::Lane;
 use crate::modal_bridge::ModalBridge;
 use crate::recovery::Rows;
-use crate::statics::influence::{Quantity, Responses};
+use crate::statics::influence::Responses;
+use crate::statics::quantity::{Quantity, Unit};
 use crate::step::vibration::Reach;
 use crate::stop_token::StopToken;
 
@@ -33,45 +34,45 @@ pub struct FreeRows {
     rounding: [f64; KINDS],
 }
 
-/// Kinds of response: deflections, moments, shears, reactions, moments of clamps.
-const KINDS: usize = 5;
+/// Kinds of response.
+const KINDS: usize = Quantity::ALL.len();
 
 impl FreeRows {
     /// Of all responses.
     pub fn new(rows: &Rows, responses: &Responses, model: &ModalBridge) -> Self {
         let modes = model.omega.len();
         let (mut factors, mut rest) = (Vec::with_capacity(rows.len() * modes), Vec::with_capacity(rows.len()));
+        let mut kinds = Vec::with_capacity(rows.len());
         for r in 0..rows.len() {
-            if !rows.by_rates() {
-                factors.extend((0..modes).map(|m| rows.factor(r, m)));
-                rest.push(0.0);
-                continue;
-            }
-            let inertia = |m: usize| -rows.factor(r, modes + m);
-            factors.extend((0..modes).map(|m| inertia(m) * model.omega[m].powi(2)));
-            rest.push(match &model.damping {
-                ModalDamping::Classical(_) => 0.0,
+            // With Ä = −(Ω²A + DȦ).
+            let [values, velocities, accelerations] =
+                [0, 1, 2].map(|order| move |m: usize| rows.factor_of(r, order, m));
+            factors.extend((0..modes).map(|m| values(m) - accelerations(m) * model.omega[m].powi(2)));
+            let quantity = responses.quantity_of(r).0;
+            let rate = |m: usize| match &model.damping {
+                // Of the forces on the masses damping cancels.
+                ModalDamping::Classical(_) if quantity.order() == 0 => 0.0,
+                ModalDamping::Classical(ratios) => velocities(m) - accelerations(m) * 2.0 * ratios[m] * model.omega[m],
                 ModalDamping::Coupled(d) => {
-                    let rate = |m: usize| (0..modes).map(|i| inertia(i) * d[(i, m)]).sum::<f64>() + rows.factor(r, m);
-                    (0..modes).map(|m| rate(m).powi(2)).sum::<f64>().sqrt()
+                    velocities(m) - (0..modes).map(|i| accelerations(i) * d[(i, m)]).sum::<f64>()
                 }
-            });
+            };
+            rest.push((0..modes).map(|m| rate(m).powi(2)).sum::<f64>().sqrt());
+            kinds.push(quantity.together() as usize);
         }
-        let kind = |quantity: Quantity| match quantity {
-            Quantity::Deflection => 0,
-            Quantity::Moment => 1,
-            Quantity::ShearLeft | Quantity::ShearRight => 2,
-            Quantity::Reaction => 3,
-            Quantity::ClampMoment => 4,
-        };
-        let mut kinds = vec![0; rows.len()];
-        for quantity in Quantity::ALL {
-            kinds[responses.range(quantity)].fill(kind(quantity));
-        }
-        let slowest = model.omega.iter().copied().fold(f64::INFINITY, f64::min);
+        let [slowest, fastest] =
+            [f64::min, f64::max].map(|pick| model.omega.iter().copied().reduce(pick).unwrap_or(f64::INFINITY));
         let length = model.shapes.mesh().length();
         let deflection = model.shapes.largest_sum_of_squares() / slowest.powi(2);
-        let rounding = [deflection, length, 1.0, 1.0, length].map(|largest| ROUNDING * largest);
+        let rounding = Quantity::ALL.map(|quantity| {
+            let of_unit = match quantity.unit() {
+                Unit::Metre => deflection,
+                Unit::Newton => 1.0,
+                Unit::NewtonMetre => length,
+                Unit::Radian => deflection / length,
+            };
+            ROUNDING * of_unit * fastest.powi(quantity.order() as i32)
+        });
         FreeRows { modes, factors, rest, kinds, rounding }
     }
 

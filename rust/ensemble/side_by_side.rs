@@ -93,8 +93,6 @@ struct Ready {
     bridge: Option<BridgeFactors<f64>>,
     /// ω² of its slowest mode.
     slowest: f64,
-    /// Factor of the bridge's stiffness.
-    stiffness: f64,
     static_loads: Vec<f64>,
 }
 
@@ -148,7 +146,6 @@ impl Task<'_> {
             stepper,
             static_loads: vehicle.static_loads(gravity),
             bridge: varied.as_ref().map(|varied| varied.factors),
-            stiffness: varied.map_or(1.0, |varied| varied.factors.coordinates),
         })
     }
 
@@ -315,8 +312,8 @@ impl Task<'_> {
         member: u32,
         record: &mut Record<'_>,
     ) -> bool {
-        let Ready { stiffness, static_loads, .. } = &ready[lane.min(ready.len() - 1)];
-        self.write_numbers(group, lane, member as usize, (*stiffness, static_loads), record);
+        let Ready { bridge, static_loads, .. } = &ready[lane.min(ready.len() - 1)];
+        self.write_numbers(group, lane, member as usize, (bridge.as_ref(), static_loads), record);
         let bodies = self.study.kinds[self.kind].bodies.len();
         self.format.is_finite(record.numbers, self.shared.table.axles(), bodies)
     }
@@ -326,7 +323,7 @@ impl Task<'_> {
         Crossed { found, at_rest, growth, last }: &Crossed<L>,
         lane: usize,
         sample: usize,
-        (stiffness, static_loads): (f64, &[f64]),
+        (bridge, static_loads): (Option<&BridgeFactors<f64>>, &[f64]),
         record: &mut Record<'_>,
     ) {
         let (format, look) = (&self.format, &self.study.look);
@@ -335,8 +332,8 @@ impl Task<'_> {
         let h = self.step(sample);
         let when = |instant| self.shared.table.when(instant, h);
         let start = format.range(Column::Responses).start;
-        for (place, (&row, &deflection)) in look.row_of.iter().zip(&look.deflections).enumerate() {
-            let k = if deflection { stiffness } else { 1.0 };
+        for (place, (&row, &quantity)) in look.row_of.iter().zip(&look.quantities).enumerate() {
+            let k = bridge.map_or(1.0, |factors| factors.of(quantity));
             for (side, (value, instant)) in found.seen.sides(row, lane, when).into_iter().enumerate() {
                 record.numbers[start + side * responses + place] = value / k;
                 record.instants[side * responses + place] = encoded(instant);

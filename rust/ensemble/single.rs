@@ -51,8 +51,7 @@ pub fn cross(
     let bodies: Vec<_> = passages.iter().map(|passage| passage.vehicle.heaves()).collect();
     let rides = history.rides(&bodies, study.analysis.rows.mesh(), stop)?;
     let loads = axle_loads(&history, &rides);
-    let stiffness = factors.map_or(1.0, |factors| factors.coordinates);
-    let shrink = |place: usize| if study.look.deflections[place] { stiffness } else { 1.0 };
+    let shrink = |place: usize| factors.map_or(1.0, |factors| factors.of(study.look.quantities[place]));
     record.forget();
     let last = history.len() - 1;
     let [growth, side] = match &history.reach {

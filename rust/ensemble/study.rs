@@ -16,7 +16,8 @@ use crate::passage::step_length::{MAX_STEPS, Steps};
 use crate::passage::{Direction, Drive, Passage};
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
-use crate::statics::influence::Quantity;
+use crate::statics::quantity::Quantity;
+use crate::stop_token::StopToken;
 use crate::vehicle::body::BuildUp;
 use crate::vehicle::equations::ContactLaw;
 use crate::vehicle::{MAX_AXLES, Vehicle};
@@ -78,7 +79,7 @@ pub struct Plan {
 impl Plan {
     /// Crossings by `kinds` of event.
     pub fn new(analysis: Arc<Analysis>, kinds: Vec<Vec<Passage>>, settings: Settings) -> Self {
-        Plan { analysis, kinds, settings, own: None, advance: None, quantities: Quantity::ALL.to_vec() }
+        Plan { analysis, kinds, settings, own: None, advance: None, quantities: Quantity::USUAL.to_vec() }
     }
 
     /// With a random road of its own for each sample, drawn from the seed and the sample's number, on top of that of the
@@ -117,6 +118,11 @@ impl Plan {
             }
             _ => false,
         });
+        // What is not prepared for is prepared now, and nothing else.
+        let analysis = match quantities.iter().all(|quantity| analysis.responses.quantities().any(|q| q == *quantity)) {
+            true => analysis,
+            false => Arc::new(analysis.looking_at(&quantities, StopToken::NEVER)?),
+        };
         let look = Selection::new(&analysis.rows, &analysis.responses, &quantities);
         if look.chosen.is_empty() {
             return Err(Error::input("quantities", "[]", "at least one response must be looked at"));

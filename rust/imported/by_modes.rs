@@ -9,7 +9,8 @@ use crate::error::{Error, not_negative, positive};
 use crate::imported::sides::Sides;
 use crate::modes::Modes;
 use crate::spline::{End, spline_slopes};
-use crate::statics::influence::{Quantity, Responses};
+use crate::statics::influence::Responses;
+use crate::statics::quantity::Quantity;
 
 /// Given masses and shapes agree if ΦᵀMΦ is the unit matrix to this.
 const NORMALISED: f64 = 1e-3;
@@ -138,7 +139,7 @@ impl Given {
             supports.iter().filter(|s| s.fixity.rotation() > 0.0).map(|s| mesh.node_at(s.at)).collect();
         let mut all: Vec<Line> = Vec::new();
         let mut missing = Vec::new();
-        for quantity in Quantity::ALL {
+        for quantity in Quantity::USUAL {
             let rows = match quantity {
                 Quantity::Reaction => supports.iter().map(|s| mesh.node_at(s.at)).collect(),
                 Quantity::ClampMoment => clamps.clone(),
@@ -311,7 +312,7 @@ fn modal_responses(
     missing: &[Quantity],
 ) -> Result<Mat<f64>, Error> {
     let mut rho = Mat::<f64>::zeros(responses.len(), omega.len());
-    for quantity in Quantity::ALL.into_iter().filter(|q| !missing.contains(q)) {
+    for quantity in Quantity::USUAL.into_iter().filter(|q| !missing.contains(q)) {
         let range = responses.range(quantity);
         let modal = data.influence.iter().find(|g| g.quantity == quantity).and_then(|g| g.modal.as_ref());
         if let Some(modal) = modal {

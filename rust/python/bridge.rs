@@ -22,7 +22,8 @@ use crate::memory;
 use crate::modes::Modes;
 use crate::recovery::Recovery;
 use crate::statics::flexibility::{Action, Actions, Flexibility, Restraint, Structure};
-use crate::statics::influence::{self, Quantity};
+use crate::statics::influence;
+use crate::statics::quantity::Quantity;
 use crate::statics::settlement::Settled;
 use crate::stop_token::StopToken;
 
@@ -170,8 +171,8 @@ fn two_sided((right, left): PySides<'_>) -> TwoSided {
 type PyLines<'py> = (String, PySides<'py>, Option<PySides<'py>>, Option<PyReadonlyArray2<'py, f64>>);
 
 fn given_lines((name, values, slopes, modal): PyLines<'_>) -> Result<GivenLines, Error> {
-    let quantity = Quantity::ALL.into_iter().find(|q| q.name() == name).ok_or_else(|| {
-        let names = Quantity::ALL.map(Quantity::name).join(", ");
+    let quantity = Quantity::USUAL.into_iter().find(|q| q.name() == name).ok_or_else(|| {
+        let names = Quantity::USUAL.map(Quantity::name).join(", ");
         Error::input("influence", format!("\"{name}\""), format!("must be one of {names}"))
     })?;
     let (values, slopes) = (two_sided(values), slopes.map(two_sided));

@@ -20,7 +20,7 @@ use crate::memory;
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::{Braking, Direction, Drive, Passage};
 use crate::recovery::Recovery;
-use crate::statics::influence::Quantity;
+use crate::statics::quantity::Quantity;
 use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
@@ -31,37 +31,23 @@ pub struct Crossing {
     vehicles: Vec<Vehicle>,
 }
 
-/// Kinds of response by the names that Python has for them.
-pub const QUANTITIES: [(&str, Quantity); 6] = [
-    ("deflection", Quantity::Deflection),
-    ("moment", Quantity::Moment),
-    ("shear_left", Quantity::ShearLeft),
-    ("shear_right", Quantity::ShearRight),
-    ("reactions", Quantity::Reaction),
-    ("clamp_moments", Quantity::ClampMoment),
-];
-
 /// The kind of response of this name.
 pub fn quantity(name: &str) -> Result<Quantity, Error> {
-    QUANTITIES.iter().find(|q| q.0 == name).map(|q| q.1).ok_or_else(|| {
-        let names: Vec<&str> = QUANTITIES.iter().map(|q| q.0).collect();
-        Error::input("quantity", format!("\"{name}\""), format!("must be one of {}", names.join(", ")))
+    Quantity::ALL.into_iter().find(|quantity| quantity.of_results() == name).ok_or_else(|| {
+        let names = Quantity::ALL.map(Quantity::of_results).join(", ");
+        Error::input("quantity", format!("\"{name}\""), format!("must be one of {names}"))
     })
 }
 
 impl Crossing {
-    fn envelope_of(&self, name: &str) -> Result<Envelope, Error> {
-        match name {
-            "axle_loads" => Ok(self.outcome.axle_loads.clone()),
-            "shear" => Ok(self.analysis.envelope_of(&self.outcome, Quantity::ShearLeft)),
-            "deflection" | "moment" | "reactions" | "clamp_moments" => {
-                Ok(self.analysis.envelope_of(&self.outcome, quantity(name)?))
-            }
-            _ => {
-                let allowed = "must be deflection, moment, shear, reactions, clamp_moments or axle_loads";
-                Err(Error::input("quantity", format!("\"{name}\""), allowed))
-            }
-        }
+    fn envelope_of(&self, py: Python<'_>, name: &str) -> PyResult<Envelope> {
+        let quantity = match name {
+            "axle_loads" => return Ok(self.outcome.axle_loads.clone()),
+            // On both sides of a section.
+            "shear" => Quantity::ShearLeft,
+            name => quantity(name)?,
+        };
+        Ok(interruptible(py, |stop| self.analysis.envelope_of(&self.outcome, quantity, stop))?)
     }
 }
 
@@ -97,10 +83,16 @@ impl Crossing {
         packed(py, &self.outcome)
     }
 
+    /// The quasi-static part of the deck's acceleration at every instant.
+    fn quasi_static_acceleration<'py>(&self, py: Python<'py>) -> PyResult<Matrix<'py>> {
+        let all = interruptible(py, |stop| self.analysis.quasi_static_acceleration(&self.outcome, stop))?;
+        rows(py, all, self.analysis.sections.len())
+    }
+
     /// The dynamic and the static responses of a quantity at every instant.
     fn histories<'py>(&self, py: Python<'py>, name: &str) -> PyResult<[Matrix<'py>; 2]> {
         let quantity = quantity(name)?;
-        let width = self.analysis.responses.range(quantity).len();
+        let width = self.analysis.count(quantity);
         let [dynamic, at_rest] = interruptible(py, |stop| self.analysis.histories(&self.outcome, quantity, stop))?;
         Ok([rows(py, dynamic, width)?, rows(py, at_rest, width)?])
     }
@@ -183,17 +175,15 @@ impl Crossing {
     /// Largest magnitude of a quantity that free vibration after the end can reach; none where a vehicle stands on the
     /// bridge.
     fn reach<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Vector<'py>>> {
-        let Some(bounds) = &self.outcome.bounds else { return Ok(None) };
-        let of = |quantity| &bounds[self.analysis.responses.range(quantity)];
+        let of = |quantity| interruptible(py, |stop| self.analysis.bounds_of(&self.outcome, quantity, stop));
         let all = match name {
             // On both sides of a section.
-            "shear" => {
-                let sides = of(Quantity::ShearLeft).iter().zip(of(Quantity::ShearRight));
-                sides.map(|(left, right)| left.max(*right)).collect()
-            }
-            _ => of(quantity(name)?).to_vec(),
+            "shear" => of(Quantity::ShearLeft)?
+                .zip(of(Quantity::ShearRight)?)
+                .map(|(left, right)| left.iter().zip(right).map(|(left, right)| left.max(right)).collect()),
+            _ => of(quantity(name)?)?,
         };
-        Ok(Some(all.into_pyarray(py)))
+        Ok(all.map(|all: Vec<f64>| all.into_pyarray(py)))
     }
 
     /// Speed of each vehicle at the end.
@@ -260,7 +250,7 @@ impl Crossing {
     /// Extremes of a quantity: columns value, time, front-axle position and partner for each of the dynamic largest,
     /// dynamic smallest, static largest and static smallest.
     fn envelope<'py>(&self, py: Python<'py>, quantity: &str) -> PyResult<[Matrix<'py>; 4]> {
-        let envelope = self.envelope_of(quantity)?;
+        let envelope = self.envelope_of(py, quantity)?;
         let columns = |extremes: &[Extreme]| {
             let values = extremes.iter().flat_map(|e| [e.value, e.time, e.position, e.partner]);
             rows(py, values.collect(), 4)
@@ -304,7 +294,7 @@ impl Crossing {
             let allowed = "must be a fraction of the largest static value, from 0 to below 1";
             return Err(Error::input("mask", mask, allowed).into());
         }
-        Ok(self.envelope_of(quantity)?.impact_factors(sense, ratio, mask).into_pyarray(py))
+        Ok(self.envelope_of(py, quantity)?.impact_factors(sense, ratio, mask).into_pyarray(py))
     }
 }
 

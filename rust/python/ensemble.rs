@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::bridge::{Asked, PyBridge};
-use super::crossing::{PyDrive, PyPassage, QUANTITIES, damped, drive as driven, passage, quantity, recovery_named};
+use super::crossing::{PyDrive, PyPassage, damped, drive as driven, passage, quantity, recovery_named};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
@@ -27,7 +27,7 @@ use crate::passage::settings::{Settings, Tail};
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
-use crate::statics::influence::Quantity;
+use crate::statics::quantity::Quantity;
 use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
 
@@ -116,11 +116,9 @@ impl Ensemble {
     /// How many responses each kind has that is looked at, in their order.
     #[getter]
     fn widths(&self) -> Vec<(String, usize)> {
-        let width = |&(name, quantity): &(&str, Quantity)| {
-            let range = self.analysis.responses.range(quantity);
-            (name.to_string(), range.len())
-        };
-        QUANTITIES.iter().filter(|(_, quantity)| self.quantities.contains(quantity)).map(width).collect()
+        let looked_at = Quantity::ALL.into_iter().filter(|quantity| self.quantities.contains(quantity));
+        let width = |quantity: Quantity| self.analysis.responses.range(quantity).len();
+        looked_at.map(|quantity| (quantity.of_results().to_string(), width(quantity))).collect()
     }
 
     /// Where each kind of number is in the rows.

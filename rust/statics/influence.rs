@@ -3,58 +3,14 @@
 //! By reciprocity the influence line of a response is a deflected shape of the same bridge: under a unit force for a
 //! deflection, a unit kink for a moment, a unit jump for a shear, a unit settlement for a reaction. All are exact.
 
+use std::ops::Range;
+
 use crate::bridge::Bridge;
-use crate::bridge::cubics::Line;
+use crate::bridge::cubics::{Line, Mesh};
 use crate::error::Error;
 use crate::statics::flexibility::{Action, Actions, Flexibility, Restraint, Structure, TOGETHER};
+use crate::statics::quantity::{At, Quantity};
 use crate::stop_token::StopToken;
-
-/// A kind of response. Signs: deflection down, sagging moment, shear as the sum of upward forces to the left, reactions
-/// up and clamp moments sagging, all positive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Deflection at the sections [m].
-    Deflection,
-    /// Bending moment at the sections [N m].
-    Moment,
-    /// Shear just left of the sections [N].
-    ShearLeft,
-    /// Shear just right of the sections [N].
-    ShearRight,
-    /// Vertical reactions of the supports, on the bridge [N].
-    Reaction,
-    /// Moments of the supports that hold the rotation, on the bridge [N m]: at an end sagging, elsewhere the rise of the
-    /// bending moment across the support.
-    ClampMoment,
-}
-
-impl Quantity {
-    /// All kinds, in the order in which responses are laid out.
-    pub const ALL: [Quantity; 6] = [
-        Quantity::Deflection,
-        Quantity::Moment,
-        Quantity::ShearLeft,
-        Quantity::ShearRight,
-        Quantity::Reaction,
-        Quantity::ClampMoment,
-    ];
-
-    /// Those that each section has, and the first in that order.
-    pub const OF_SECTIONS: [Quantity; 4] =
-        [Quantity::Deflection, Quantity::Moment, Quantity::ShearLeft, Quantity::ShearRight];
-
-    /// What it is called in messages and among the arguments of a bridge given by its modes.
-    pub fn name(self) -> &'static str {
-        match self {
-            Quantity::Deflection => "deflection",
-            Quantity::Moment => "moment",
-            Quantity::ShearLeft => "shear-left",
-            Quantity::ShearRight => "shear-right",
-            Quantity::Reaction => "reaction",
-            Quantity::ClampMoment => "clamp-moment",
-        }
-    }
-}
 
 /// Slope at a node [rad] per unit load along the bridge.
 pub fn slope(flexibility: &Flexibility, node: usize, structure: Structure) -> Line {
@@ -126,23 +82,25 @@ fn held(flexibility: &Flexibility, restraint: Restraint, structure: Structure) -
     held.then(|| of_reaction(flexibility, restraint)).into_iter().collect()
 }
 
-/// Every response looked at: deflection, moment and both shears at the sections, reactions, clamp moments.
+/// Every response looked at, kind by kind, and its influence line.
 #[derive(Debug, Clone)]
 pub struct Responses {
     sections: Vec<usize>,
-    /// Number of reactions; the clamp moments come after them.
-    reactions: usize,
+    /// The kinds, and which of the lines are theirs.
+    ranges: Vec<(Quantity, Range<usize>)>,
     /// Nodes at which deflection is held.
     held: Vec<usize>,
     lines: Vec<Line>,
 }
 
 impl Responses {
-    /// At `sections` [m], which must be nodes of the flexibility's mesh; `stop` is asked now and then whether to.
+    /// Of some kinds at `sections` [m], which must be nodes of the flexibility's mesh; `stop` is asked now and then whether
+    /// to.
     pub fn new(
         flexibility: &Flexibility,
         bridge: &Bridge,
         sections: &[f64],
+        quantities: &[Quantity],
         stop: StopToken<'_>,
     ) -> Result<Self, Error> {
         let mesh = flexibility.mesh();
@@ -152,41 +110,100 @@ impl Responses {
         let actual = Structure::Actual;
         let (clamps, vertical): (Vec<Restraint>, Vec<Restraint>) =
             flexibility.restraints(actual).into_iter().partition(|r| matches!(r, Restraint::Slope(_)));
-
-        let deflections = sections.iter().map(|&node| vec![(1.0, Action::Force(node))]);
-        let moments = sections.iter().map(|&node| of_moment(flexibility, node, actual));
-        let shears: Vec<[Actions; 2]> = sections.iter().map(|&node| of_shear(flexibility, node, actual)).collect();
-        let side = |side: usize| shears.iter().map(move |both| both[side].clone());
-        let reactions = vertical.iter().chain(&clamps).map(|&r| vec![of_reaction(flexibility, r)]);
-        let all: Vec<Actions> = deflections.chain(moments).chain(side(0)).chain(side(1)).chain(reactions).collect();
+        let at_sections = |actions: &dyn Fn(usize) -> Actions| sections.iter().map(|&node| actions(node)).collect();
+        let of_restraints = |all: &[Restraint]| all.iter().map(|&r| vec![of_reaction(flexibility, r)]).collect();
+        let of = |quantity: Quantity| -> Vec<Actions> {
+            match quantity {
+                Quantity::Deflection => at_sections(&|node| vec![(1.0, Action::Force(node))]),
+                Quantity::Slope => at_sections(&|node| vec![(1.0, Action::Couple(node))]),
+                Quantity::Moment => at_sections(&|node| of_moment(flexibility, node, actual)),
+                Quantity::ShearLeft => at_sections(&|node| of_shear(flexibility, node, actual)[0].clone()),
+                Quantity::ShearRight => at_sections(&|node| of_shear(flexibility, node, actual)[1].clone()),
+                Quantity::Reaction => of_restraints(&vertical),
+                Quantity::ClampMoment => of_restraints(&clamps),
+                // Motion is that of the modes alone.
+                Quantity::Velocity | Quantity::Acceleration => at_sections(&|_| Actions::new()),
+            }
+        };
+        let (mut ranges, mut all) = (Vec::with_capacity(quantities.len()), Vec::new());
+        for &quantity in quantities {
+            let first = all.len();
+            all.extend(of(quantity));
+            ranges.push((quantity, first..all.len()));
+        }
         let mut lines = Vec::with_capacity(all.len());
         for some in all.chunks(TOGETHER) {
             lines.extend(flexibility.each_deflected(some, actual));
             stop.check()?;
         }
-        Ok(Responses { sections, reactions: vertical.len(), held, lines })
+        Ok(Responses { sections, ranges, held, lines })
     }
 
     /// From their influence lines: deflections, moments, shears on the left and on the right of every section (nodes),
     /// then so many reactions, then clamp moments; `held` are the nodes at which deflection is held.
     pub fn from_lines(sections: Vec<usize>, reactions: usize, held: Vec<usize>, lines: Vec<Line>) -> Self {
-        Responses { sections, reactions, held, lines }
+        let (n, mut first) = (sections.len(), 0);
+        let ranges = Quantity::USUAL.map(|quantity| {
+            let count = match quantity.at() {
+                At::Sections => n,
+                At::Supports => reactions,
+                At::Clamps => lines.len() - first,
+            };
+            first += count;
+            (quantity, first - count..first)
+        });
+        Responses { sections, ranges: ranges.to_vec(), held, lines }
+    }
+
+    /// Only some of the kinds, and motion at the sections, of which there are no lines.
+    pub fn of_quantities(&self, quantities: &[Quantity], mesh: &Mesh) -> Self {
+        let (mut ranges, mut lines) = (Vec::with_capacity(quantities.len()), Vec::new());
+        for &quantity in quantities {
+            let first = lines.len();
+            match quantity.order() {
+                0 => lines.extend_from_slice(&self.lines[self.range(quantity)]),
+                _ => lines.resize(first + self.sections.len(), Line::straight(mesh, 0.0, 0.0)),
+            }
+            ranges.push((quantity, first..lines.len()));
+        }
+        Responses { ranges, lines, ..self.clone() }
     }
 
     /// The same of some of the sections only, by their numbers.
     pub fn of_sections(&self, chosen: &[usize]) -> Self {
+        let mut end = 0;
+        let ranges = self.ranges.iter().map(|(quantity, range)| {
+            let first = end;
+            end += if quantity.at() == At::Sections { chosen.len() } else { range.len() };
+            (*quantity, first..end)
+        });
         Responses {
+            ranges: ranges.collect(),
             sections: chosen.iter().map(|&s| self.sections[s]).collect(),
             lines: self.numbers_at(chosen).map(|r| self.lines[r].clone()).collect(),
-            ..self.clone()
+            held: self.held.clone(),
         }
     }
 
     /// Numbers of the responses at some of the sections, and of all that are not at sections.
     pub fn numbers_at(&self, chosen: &[usize]) -> impl Iterator<Item = usize> {
-        let of_sections = Quantity::OF_SECTIONS.map(|quantity| self.range(quantity).start);
-        let at = of_sections.into_iter().flat_map(move |first| chosen.iter().map(move |s| first + s));
-        at.chain(self.range(Quantity::Reaction).start..self.len())
+        self.ranges.iter().flat_map(move |(quantity, range)| -> Vec<usize> {
+            match quantity.at() {
+                At::Sections => chosen.iter().map(|section| range.start + section).collect(),
+                _ => range.clone().collect(),
+            }
+        })
+    }
+
+    /// The kind of a response, and its number among those of its kind.
+    pub fn quantity_of(&self, response: usize) -> (Quantity, usize) {
+        let own = self.ranges.iter().find(|(_, range)| range.contains(&response));
+        own.map_or((Quantity::Deflection, response), |(quantity, range)| (*quantity, response - range.start))
+    }
+
+    /// The kinds.
+    pub fn quantities(&self) -> impl Iterator<Item = Quantity> {
+        self.ranges.iter().map(|range| range.0)
     }
 
     /// Nodes of the sections.
@@ -204,18 +221,9 @@ impl Responses {
         self.lines.is_empty()
     }
 
-    /// Indices of the responses of one kind, in the order of sections or of restraints.
-    pub fn range(&self, quantity: Quantity) -> std::ops::Range<usize> {
-        let n = self.sections.len();
-        let vertical = self.reactions;
-        match quantity {
-            Quantity::Deflection => 0..n,
-            Quantity::Moment => n..2 * n,
-            Quantity::ShearLeft => 2 * n..3 * n,
-            Quantity::ShearRight => 3 * n..4 * n,
-            Quantity::Reaction => 4 * n..4 * n + vertical,
-            Quantity::ClampMoment => 4 * n + vertical..self.lines.len(),
-        }
+    /// Indices of the responses of one kind, in the order of sections or of restraints; of one that is not looked at none.
+    pub fn range(&self, quantity: Quantity) -> Range<usize> {
+        self.ranges.iter().find(|range| range.0 == quantity).map_or(0..0, |range| range.1.clone())
     }
 
     /// Whether a support holds the deflection at a node; one on a spring does not.
@@ -234,7 +242,7 @@ impl Responses {
     pub fn at_station(&self, response: usize, node: usize) -> f64 {
         let line = &self.lines[response];
         let own_section =
-            |range: std::ops::Range<usize>| range.contains(&response) && self.sections[response - range.start] == node;
+            |range: Range<usize>| range.contains(&response) && self.sections[response - range.start] == node;
         // Across its own section a shear's line rises by one, at the ends too, where there is no panel on one side.
         if own_section(self.range(Quantity::ShearLeft)) {
             if node == line.cubics().len() { line.before(node) + 1.0 } else { line.after(node) }

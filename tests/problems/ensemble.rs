@@ -267,7 +267,8 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
             );
         };
         let hands = run.clock.of(number);
-        let shrink = |place: usize| if study.look.deflections[place] { alone.stiffness } else { 1.0 };
+        let factors = BridgeFactors { coordinates: alone.stiffness, rates: alone.rates };
+        let shrink = |place: usize| factors.of(study.look.quantities[place]);
         let values = column(results, sample, Column::Responses);
         let shared = format.own_statics.then(|| column(results, sample, Column::Statics));
         let statics = match shared {

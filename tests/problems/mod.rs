@@ -15,6 +15,7 @@ use spanwise::error::Error;
 use spanwise::passage::{Drive, Passage, Settings};
 use spanwise::recovery::Recovery;
 use spanwise::statics::{Flexibility, Quantity};
+use spanwise::stop_token::StopToken;
 use spanwise::vehicle::{Axle, Friction, Vehicle, catalogue};
 
 /// One foot [m].
@@ -308,7 +309,7 @@ impl Run {
 
     /// Ratio of the largest dynamic to the largest static response of a kind, section by section.
     pub fn impact(&self, quantity: Quantity) -> Vec<f64> {
-        let envelope = self.analysis.envelope_of(&self.outcome, quantity);
+        let envelope = self.analysis.envelope_of(&self.outcome, quantity, StopToken::NEVER).unwrap();
         let (d, s) = (&envelope.dynamic.max, &envelope.at_rest.max);
         d.iter().zip(s).map(|(d, s)| d.value / s.value).collect()
     }
@@ -326,7 +327,7 @@ impl Run {
         for row in self.rows() {
             own.iter_mut().zip(row.dynamic).for_each(|(m, v)| *m = m.max(v.abs()));
         }
-        for quantity in Quantity::ALL {
+        for quantity in Quantity::USUAL {
             let kind = &mut own[self.analysis.responses.range(quantity)];
             let largest = largest_magnitude(kind);
             kind.iter_mut().filter(|m| **m <= 1e-9 * largest).for_each(|m| *m = largest);
