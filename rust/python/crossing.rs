@@ -167,8 +167,12 @@ impl Crossing {
     #[getter]
     fn growth(&self) -> f64 {
         let analysis::Outcome { history, envelope: Envelope { dynamic, .. }, .. } = &self.outcome;
-        let seen = |r: usize| [dynamic.max[r].value, dynamic.min[r].value];
-        let of = |reach| self.analysis.free.growth(reach, seen)[0];
+        let Analysis { free, look, .. } = &*self.analysis;
+        let seen = |row: usize| {
+            let response = look.first_of_row[row];
+            [dynamic.max[response].value, dynamic.min[response].value]
+        };
+        let of = |reach| free.growth(reach, seen)[0];
         history.reach.as_ref().map_or(f64::NAN, of)
     }
 
