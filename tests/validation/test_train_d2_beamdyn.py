@@ -41,6 +41,20 @@ DEFLECTIONS: Final = {
     280: 12.1462,
     300: 12.7520,
 }
+#: Largest acceleration of the deck in three modes by speed in km/h, as printed [m/s2].
+ACCELERATIONS: Final = {
+    100: 0.8734,
+    120: 1.5395,
+    140: 1.3140,
+    160: 2.9259,
+    180: 5.5769,
+    200: 2.7283,
+    220: 1.3798,
+    240: 2.4057,
+    260: 1.6164,
+    280: 1.6162,
+    300: 1.8593,
+}
 #: Largest moment by closed form, and as BeamDyn prints it [MN m].
 MOMENTS: Final = {100: (5.64456, 5.6861), 180: (9.00189, 9.0373), 300: (6.17969, 6.2104)}
 
@@ -91,6 +105,13 @@ def test_frequencies_and_static_values() -> None:
 def test_deflections(speed: int) -> None:
     found = crossing(float(speed)).envelope("deflection").max.value.max()
     assert 1e3 * found == pytest.approx(DEFLECTIONS[speed], rel=2e-4)
+
+
+@pytest.mark.parametrize("speed", ACCELERATIONS)
+def test_accelerations(speed: int) -> None:
+    envelope = crossing(float(speed)).envelope("acceleration")
+    found = max(envelope.max.value.max(), -envelope.min.value.min())
+    assert found == pytest.approx(ACCELERATIONS[speed], rel=1e-3)
 
 
 @pytest.mark.parametrize("speed", MOMENTS)
