@@ -262,7 +262,7 @@ def test_what_it_was_given_without() -> None:
         sections=[float(path[3])],
         influence={"deflection": bridge.deflections(path, [float(path[3])]).T},
     )
-    assert given.missing == ["moment", "shear-left", "shear-right", "reaction"]
+    assert given.missing == ["moment", "shear-left", "shear-right", "reaction", "slope"]
     run = crossing(given, [float(path[3])], modes=2)
     assert np.isfinite(run.deflection).all()
     assert np.isnan(run.envelope("moment").max.value).all()

@@ -158,8 +158,7 @@ impl Preparation {
             narrowest_panel: given.narrowest_panel(),
         };
         let source = Source { preparation: self.clone(), subject: Subject::Given(given.clone(), chosen), lines };
-        let missing = given.missing().iter().copied().chain([Quantity::Slope]).collect();
-        Ok(Analysis::new(Arc::new(source), sections, modes, model, responses, missing))
+        Ok(Analysis::new(Arc::new(source), sections, modes, model, responses, given.missing().to_vec()))
     }
 }
 

@@ -10,6 +10,7 @@ use crate::error::{Error, not_negative};
 use crate::imported::sides::Sides;
 use crate::spline::{End, spline_slopes};
 use crate::statics::influence::Responses;
+use crate::statics::quantity::Quantity;
 
 /// F* may be unsymmetric by this fraction of its largest element: what a table of five digits rounds away.
 const UNSYMMETRIC: f64 = 1e-4;
@@ -166,7 +167,7 @@ impl Given {
         let held = supports.iter().filter(|s| s.fixity.vertical().is_infinite()).map(|s| mesh.node_at(s.at)).collect();
         let responses = Responses::from_lines(nodes, supports.len(), held, lines);
         let motion = Motion::Flexibility { matrix, columns: of_masses };
-        Ok(Given { mesh, supports, masses, motion, responses, missing: Vec::new() })
+        Ok(Given { mesh, supports, masses, motion, responses, missing: vec![Quantity::Slope] })
     }
 }
 

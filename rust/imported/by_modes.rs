@@ -168,6 +168,7 @@ impl Given {
         let rho = modal_responses(data, &responses, &lines, &masses, &shapes[1], &omega, &mesh, &missing)?;
         let at_masses = Mat::from_fn(masses.len(), modes, |j, m| shapes[1][(masses[j].0, m)]);
         let motion = Motion::Modes { modes: Modes { omega, shapes: at_masses }, lines, rho };
+        missing.push(Quantity::Slope);
         Ok(Given { mesh, supports, masses, motion, responses, missing })
     }
 }
