@@ -52,7 +52,7 @@ def test_envelopes(quantity: Any) -> None:
         samples=2,
         speed=30.0,
         damping=0.0,
-        quantities=["clamp-moment", "moments"],  # type: ignore[list-item]
+        quantities=["clamp-moment", "moments"],
     )
     assert again.quantities == ("moment", "clamp_moments")
 
@@ -72,8 +72,10 @@ def test_impact_factors(factor: Any) -> None:
 
 
 def test_wheels_off_the_road() -> None:
-    assert_array_equal(MANY.off_road.count[2], RUN.off_road.count)
-    np.testing.assert_allclose(MANY.off_road.total[2], RUN.off_road.total, rtol=1e-9, atol=1e-12)
+    assert_array_equal(MANY.contact_loss.count[2], RUN.contact_loss.count)
+    np.testing.assert_allclose(
+        MANY.contact_loss.total[2], RUN.contact_loss.total, rtol=1e-9, atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("quantity", ["momentum", "moment max", 3, None])
@@ -108,8 +110,8 @@ def test_influence_lines(name: Any, as_given: Any) -> None:
         ("moment", 'envelope("moment")', lambda found: found.moment),
         ("shear_left", 'envelope("shear_left")', lambda found: found.shear_left),
         ("axle_loads", 'envelope("axle_loads")', lambda found: found.axle_loads),
-        ("lift_offs", "off_road.count", lambda found: found.lift_offs),
-        ("time_off_road", "off_road.total", lambda found: found.time_off_road),
+        ("lift_offs", "contact_loss.count", lambda found: found.lift_offs),
+        ("time_off_road", "contact_loss.total", lambda found: found.time_off_road),
         ("impact_factors", "impact_factors.sagging", lambda found: found.impact_factors("sagging")),
         (
             "impact_factors",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._value import Value, frozen
-from spanwise.columns import Moments
+from spanwise.extremes import Moments
 
 Array: TypeAlias = NDArray[np.float64]
 Whole: TypeAlias = NDArray[np.uint32]
@@ -93,7 +93,7 @@ class Rows(Value):
 
     @classmethod
     def joined(cls, parts: Sequence[Rows]) -> Rows:
-        """Several as one, in this order; all are of one recipe."""
+        """Several as one, in this order; all are of one plan."""
         first = parts[0]
         clock, renumbered = _core.Clock.joined([each.clock for each in parts])
         marches = [
@@ -149,6 +149,12 @@ class Rows(Value):
         return sum(self.widths.values())
 
     @property
+    def axles(self) -> int:
+        """How many axles there are at most."""
+        start, end = self.columns["axle_loads"]
+        return (end - start) // 2
+
+    @property
     def statics(self) -> Array:
         """Static extremes, largest and then smallest: one row for all samples, or one for each."""
         low, high = self.columns["statics"]
@@ -173,6 +179,6 @@ class Rows(Value):
         """The time step of a sample at its speed [s] and how often it was halved, if known."""
         return self.clock.step(int(self.marches[row]), speed)
 
-    def frozen_statics(self, some: slice) -> Array:
+    def frozen_statics(self, start: int, width: int) -> Array:
         """Static extremes of some responses, not to be written to."""
-        return frozen(np.array(self.statics[..., some]))
+        return frozen(np.array(self.statics[..., start : start + width]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,23 +29,13 @@ from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
-Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
 
 #: What static axle loads depend on: masses, and springs that share them out.
 SHARED_OUT: Final = ("body_mass", "tyre_stiffness", "suspension_stiffness")
 
 
-def cores(quantities: Sequence[str]) -> list[str]:
-    """The kinds of response that the core knows for these quantities."""
-    return [
-        name
-        for each in quantities
-        for name in (("shear_left", "shear_right") if each == "shear" else (each,))
-    ]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class Recipe(Value):
+class Plan(Value):
     """What `ensemble` was asked for, checked.
 
     Attributes
@@ -70,7 +60,7 @@ class Recipe(Value):
     own: ISO8608 | None
     factors: list[Factors]
     conditions: Conditions
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[str, ...]
     advance: float | None
     settings: dict[str, Any]
 

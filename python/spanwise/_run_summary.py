@@ -1,29 +1,31 @@
-"""A run in words and tables, for reading on a terminal."""
+"""A run in words and tables, for reading on a terminal or in a notebook."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._freevibration import growth_in_words, tail_in_words
 from spanwise._shown import warned
+from spanwise._table import Block, Table, html, listed, text
 from spanwise._traffictable import is_alone
-from spanwise._values import axle_names, stop
+from spanwise._wheels import Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
 from spanwise.layout import Support
-from spanwise.responses import Envelope, Extremes, Quantity
-from spanwise.roads import ISO8608, Profile, Road, Sum
+from spanwise.quantities import Response, Sense
 from spanwise.runs import Run
-from spanwise.table import factor_text
 from spanwise.traffic import Passage, plain_drive
-from spanwise.vehicle import Vehicle
-from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
+
+#: Below the table of the largest responses.
+GOVERNING: Final = (
+    "static: the largest at the same place under the static axle loads",
+    "factors far from where a response governs are to be read with the response itself",
+)
 
 #: Part of the largest response below which one of the other sign is not shown.
 OPPOSITE: Final = 0.02
@@ -31,7 +33,18 @@ OPPOSITE: Final = 0.02
 
 def summary(run: Run) -> str:
     """Bridge, vehicles, road and settings; the governing responses; the impact factors."""
-    return "\n".join([*_description(run), "", *_governing(run), "", str(run.impact_factors)])
+    return text(_blocks(run))
+
+
+def page(run: Run) -> str:
+    """The same for a notebook."""
+    return html(_blocks(run))
+
+
+def _blocks(run: Run) -> Iterator[Block]:
+    yield _description(run)
+    yield _governing(run)
+    yield from run.impact_factors.blocks()
 
 
 def _description(run: Run) -> Iterator[str]:
@@ -41,34 +54,35 @@ def _description(run: Run) -> Iterator[str]:
     )
     rigidities = _rigidity(bridge)
     damping = in_words(used["damping"], run.frequencies)
+    frequencies = listed(run.frequencies, ".3f")
     yield f"bridge    {bridge.length:g} m, {held}"
     yield (
         f"          {rigidities}{len(bridge.masses)} moving masses, "
         f"{bridge.masses.sum() / 1000.0:.4g} t"
     )
-    yield f"modes     {len(run.frequencies)}: {_list(run.frequencies, '.3f')} Hz; damping {damping}"
+    yield f"modes     {len(run.frequencies)}: {frequencies} Hz; damping {damping}"
     for k, passage in enumerate(run.passages):
         yield from _vehicle(run, k, passage)
-    yield f"road      {road_in_words(run.road)}"
+    yield f"road      {run.road}"
     ramp = f" ({used['ramp']:g} m of it to fade in the road)" if used["ramp"] else ""
     yield (
         f"crossing  approach {used['approach']:g} m{ramp}; {run.steps} steps of "
         f"{used['step']:.4g} s, beta {used['beta']:.4g}"
     )
-    yield f"          {tail_in_words(run)}"
+    yield f"          {_tail(run)}"
     yield f"          recovery by {used['recovery']}"
     if run.can_grow:
         yield "note      free vibration after the end can reach more than was recorded; where it"
         yield "          grows most, by a bound that need not be met:"
     for growth in run.can_grow:
-        yield f"          {growth_in_words(growth)}"
+        yield f"          {growth}"
     if run.can_grow and used["tail"] is not None:
         yield "          (without `tail` the record goes on until no extreme can follow)"
     for k in range(len(run.passages)):
-        if (stopped := stop(run, k)) is not None:
+        if (stopped := run.stop(k)) is not None:
             yield _standing(run, k, *stopped)
     yield from _varying(run)
-    yield from _off_road(run)
+    yield from _contact_loss(run)
     yield from warned(run.warnings)
 
 
@@ -77,16 +91,15 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     truck, motion = passage.vehicle, run.vehicles[number]
     own = [k for k, (vehicle, _) in enumerate(run.axles) if vehicle == number + 1]
     name = "vehicle" if len(run.passages) == 1 else f"vehicle {number + 1}"
-    bodies = f"{len(truck.bodies)} bodies, " if isinstance(truck, Vehicle) and truck.bodies else ""
     # A train of forces has no mass.
     mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
     yield (
-        f"{name:<10}{bodies}{mass}static axle loads "
-        f"{_list(run.static_axle_loads[own] / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from "
+        f"{name:<10}{truck._bodies_in_words}{mass}static axle loads "
+        f"{listed(run.static_axle_loads[own] / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from "
         "first to last axle"
     )
-    if isinstance(truck, Vehicle) and any(axle.mass > 0.0 for axle in truck.axles):
-        masses = _list((axle.mass / 1000.0 for axle in truck.axles), ".4g")
+    if unsprung := truck._unsprung:
+        masses = listed((each / 1000.0 for each in unsprung), ".4g")
         yield f"          unsprung masses {masses} t, included above"
     yield from _frequencies(truck)
     drive = run.settings["drive"] if passage.drive is None else plain_drive(passage.drive)
@@ -97,7 +110,7 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
         way[:0] = [f"to the {passage.direction} {lane}", f"enters at {passage.entry:g} s"]
     yield f"          {', '.join(way)}"
     if passage.road is not None:
-        yield f"          on a road of its own: {road_in_words(passage.road)}"
+        yield f"          on a road of its own: {passage.road}"
 
 
 def _drive(drive: object) -> str:
@@ -114,22 +127,16 @@ def _drive(drive: object) -> str:
     )
 
 
-def road_in_words(road: Road) -> str:
-    """Kind, roughness, seed and contact patch; of a sum those of every part."""
-    if isinstance(road, Sum):
-        return " + ".join(map(road_in_words, road.parts))
-    words = [road.kind]
-    for key in ("at", "start", "end"):
-        if hasattr(road, key):
-            words.append(f"{key} {getattr(road, key):g} m")
-    if isinstance(road, ISO8608):
-        words[0] += f" class {road.road_class}" if road.road_class else ""
-        words.append(f"G_d(n0) {road.G:.4g} m3")
-        words.append(f"seed {road.seed}" + (f" sample {road.sample}" if road.sample else ""))
-    if isinstance(road, Profile):
-        words.append(f"{len(road.x)} points from {road.x[0]:g} to {road.x[-1]:g} m")
-    patch = getattr(road, "contact_patch", None)
-    return ", ".join(words if patch is None else [*words, f"contact patch {patch:g} m"])
+def _tail(run: Run) -> str:
+    """How long the tail is, and why."""
+    length = f"tail {run.tail:.4g} s"
+    if np.isnan(run.growth):
+        length += ", a vehicle standing on the bridge"
+    if run.settings["tail"] is not None:
+        return length
+    if run.settled:
+        return f"{length}, until no extreme can follow"
+    return f"{length}, the longest kept: ten periods of the slowest mode"
 
 
 def _standing(run: Run, number: int, time: float, at: Array) -> str:
@@ -141,18 +148,18 @@ def _standing(run: Run, number: int, time: float, at: Array) -> str:
 
 def _varying(run: Run) -> Iterator[str]:
     """How much the axle loads vary, if they do."""
-    percent = 100.0 * run.load_coefficients
+    percent = 100.0 * run.dynamic_load_coefficients
     if not percent.any():
         return
     values = f"{percent.min():.1f} to {percent.max():.1f}"
     if len(percent) <= 8:
-        values = _list(percent, ".1f")
+        values = listed(percent, ".1f")
     yield f"loads     on the bridge {values} % from their static values (root mean square)"
 
 
-def _off_road(run: Run) -> Iterator[str]:
+def _contact_loss(run: Run) -> Iterator[str]:
     """How often and how long wheels leave the road."""
-    off = run.off_road
+    off = run.contact_loss
     if not run.settings["lift_off"]:
         yield "wheels    held to the road, in tension if need be"
     elif not off.count.any():
@@ -161,13 +168,13 @@ def _off_road(run: Run) -> Iterator[str]:
         times = f"{off.count.sum()} time{'s' if off.count.sum() > 1 else ''}"
         yield f"wheels    leave the road {times}, {off.total.sum():.3f} s in all:"
         for name, count, total, longest in zip(
-            axle_names(run), off.count, off.total, off.longest, strict=True
+            run.axle_names, off.count, off.total, off.longest, strict=True
         ):
             if count > 0:
                 yield f"          {name}: {count}, {total:.3f} s in all, {longest:.3f} s at most"
 
 
-def _frequencies(truck: AnyVehicle) -> Iterator[str]:
+def _frequencies(truck: Wheels) -> Iterator[str]:
     """Those of the vehicle on rigid ground, in both states if it has two, in lines of a few."""
     states = {
         "while friction holds": truck.frequencies(locked=True),
@@ -177,15 +184,15 @@ def _frequencies(truck: AnyVehicle) -> Iterator[str]:
     if len(holding) == 0:
         return
     if np.array_equal(holding, sliding):
-        yield f"          on rigid ground {_list(holding, '.3f')} Hz"
+        yield f"          on rigid ground {listed(holding, '.3f')} Hz"
     elif len(holding) <= 2:
         yield (
-            f"          on rigid ground {_list(holding, '.3f')} Hz while friction holds, "
-            f"{_list(sliding, '.3f')} Hz sliding"
+            f"          on rigid ground {listed(holding, '.3f')} Hz while friction holds, "
+            f"{listed(sliding, '.3f')} Hz sliding"
         )
     else:
         for state, found in states.items():
-            yield f"          on rigid ground {_list(found, '.3f')} Hz {state}"
+            yield f"          on rigid ground {listed(found, '.3f')} Hz {state}"
 
 
 def _support(support: Support) -> str:
@@ -210,80 +217,50 @@ def _rigidity(bridge: Bridge) -> str:
         return f"EI {values[0]:.5g} N m2; "
     if len(values) > 8:
         return f"EI {min(values):.5g} to {max(values):.5g} N m2; "
-    text = f"EI {_list(values, '.5g')} N m2"
+    text = f"EI {listed(values, '.5g')} N m2"
     if at is not None:
-        text += f" {'at' if len(at) == len(values) else 'between'} {_list(at, 'g')} m"
+        text += f" {'at' if len(at) == len(values) else 'between'} {listed(at, 'g')} m"
     return f"{text}; "
 
 
-def _governing(run: Run) -> list[str]:
+def _governing(run: Run) -> Table:
     """The largest response of each kind: where and when, beside the static one at that place."""
-    factors = run.impact_factors
-    deflection, moment = run.envelope("deflection"), run.envelope("moment")
-    shear, reactions = run.envelope("shear"), run.envelope("reactions")
-    loads = run.envelope("axle_loads")
-    sections = [f"x = {x:.3f} m" for x in run.sections]
-    supports = [f"x = {x:.3f} m" for x in run.supports]
-    axles = [name.replace("vehicle", "veh.") for name in axle_names(run)]
-    most = _larger(shear.max, shear.min)
-    static = _larger(shear.static_max, shear.static_min)
-
-    def upward(
-        name: str, of: Envelope, quantity: Quantity, places: list[str], scale: float = 1e-3
-    ) -> list[str]:
-        """What goes the other way, if it is more than nothing."""
-        if not of.min.value.min() < -OPPOSITE * of.max.value.max():
-            return []
-        lifted = run._core.impact_factors(quantity, "negative", factors.ratio, factors.mask)
-        i = int(np.argmin(of.min.value))
-        return [_row(name, of.min, of.static_min, lifted, places, scale, i)]
-
-    return [
-        f"{'largest':<24}{'dynamic':>10}{'at':>14}{'time [s]':>10}{'front axle [m]':>16}"
-        f"{'static':>10}{'factor':>8}",
-        _row(
-            "deflection, down [mm]",
-            deflection.max,
-            deflection.static_max,
-            factors.deflection,
-            sections,
-            1e3,
-        ),
-        *upward("deflection, up [mm]", deflection, "deflection", sections, 1e3),
-        _row("moment, sagging [kN m]", moment.max, moment.static_max, factors.sagging, sections),
-        _row("moment, hogging [kN m]", moment.min, moment.static_min, factors.hogging, sections),
-        _row("shear [kN]", most, static, factors.shear, sections),
-        _row("reaction, up [kN]", reactions.max, reactions.static_max, factors.reactions, supports),
-        *upward("reaction, uplift [kN]", reactions, "reactions", supports),
-        _row("axle load [kN]", loads.max, loads.static_max, factors.axle_loads, axles),
-        "static: the largest at the same place under the static axle loads",
-        "factors far from where a response governs are to be read with the response itself",
-    ]
-
-
-def _row(
-    name: str,
-    dynamic: Extremes,
-    static: Extremes,
-    factors: Array,
-    places: list[str],
-    scale: float = 1e-3,
-    at: int | None = None,
-) -> str:
-    i = int(np.argmax(np.abs(dynamic.value))) if at is None else at
-    beside = round(static.value[i] * scale, 3) + 0.0  # never -0.000
-    return (
-        f"{name:<24}{dynamic.value[i] * scale:>10.3f}{places[i]:>14}{dynamic.time[i]:>10.4f}"
-        f"{dynamic.position[i]:>16.3f}{beside:>10.3f}{factor_text(factors[i]):>8}"
+    heads = ["largest", "dynamic", "at", "time [s]", "front axle [m]", "static", "factor"]
+    forms = ["<", ".3f", "<", ".4f", ".3f", ".3f", ".3f"]
+    return Table(
+        heads, [row for each in run.responses for row in _rows(run, each)], forms, GOVERNING
     )
 
 
-def _larger(a: Extremes, b: Extremes) -> Extremes:
-    """At each section the one of the larger magnitude."""
-    first = np.abs(a.value) >= np.abs(b.value)
-    names = ("value", "time", "position", "partner")
-    return Extremes(*(np.where(first, getattr(a, each), getattr(b, each)) for each in names))
+def _rows(run: Run, of: Response) -> Iterator[list[object]]:
+    """The extremes that are always told, and what goes the other way if it is more than nothing."""
+    envelope, (unit, scale) = run.envelope(of.name), of.shown
+    senses: list[Sense] = [*of.reported]
+    if senses == ["positive"] and envelope.min.value.min() < -OPPOSITE * envelope.max.value.max():
+        senses.append("negative")
+    x = run.places(of.axis)
+    places = run.axle_names if of.axis == "axle" else [f"x = {each:.3f} m" for each in x]
+    for sense in senses if len(x) else []:
+        dynamic, static = envelope.of(sense)
+        sign = {"positive": 1.0, "negative": -1.0}.get(sense)
+        i = int(np.argmax(np.abs(dynamic.value) if sign is None else sign * dynamic.value))
+        yield [
+            f"{of.called(sense)} [{unit}]",
+            float(scale * dynamic.value[i]),
+            places[i],
+            float(dynamic.time[i]),
+            float(dynamic.position[i]),
+            float(scale * static.value[i]),
+            _factor(run, of, sense, i),
+        ]
 
 
-def _list(values: Iterable[float], form: str) -> str:
-    return ", ".join(format(value, form) for value in values)
+def _factor(run: Run, of: Response, sense: Sense, i: int) -> float:
+    """The impact factor there, of those of the run if they are of this sense."""
+    if not of.factors:
+        return np.nan
+    for factor in of.factors if sense in of.reported else ():
+        if factor.sense in (sense, "either"):
+            return float(run.impact_factors[factor.name][i])
+    found = run.impact_factors
+    return float(run._core.impact_factors(of.name, sense, found.ratio, found.mask)[i])
