@@ -21,10 +21,9 @@ from spanwise._renamed import Renamed, renamed
 from spanwise._rows import Rows
 from spanwise._shown import many
 from spanwise._value import frozen
-from spanwise.extremes import Array, Moments, SampleExtremes, governing
+from spanwise.extremes import Array, SampleExtremes, When, governing
 from spanwise.impact_factors import ByName
-from spanwise.quantities import RESPONSES, Response, factors, parts, telling
-from spanwise.responses import places
+from spanwise.quantities import RESPONSES, Axis, Response, factors, parts, telling
 from spanwise.runs import Run
 from spanwise.samples import BodyAccelerations, Failure, SampleContactLoss
 
@@ -37,16 +36,6 @@ By: TypeAlias = Literal["sample", "section", "support", "clamp", "axle"]
 
 #: Most memory that the histories of some samples may take [bytes].
 MOST_BYTES = 4 * 2**30
-
-
-class Instants:
-    """Finds times and positions of the extremes of a quantity, when they are asked for."""
-
-    def __init__(self, ensemble: Ensemble, largest: int, smallest: int, width: int) -> None:
-        self._ensemble, self._starts, self._width = ensemble, (smallest, largest), width
-
-    def __call__(self, largest: bool) -> Moments:
-        return self._ensemble._moments(self._starts[int(largest)], self._width)
 
 
 class Ensemble:
@@ -62,8 +51,6 @@ class Ensemble:
         Number of the first sample, and the seed: with its number they make a sample what it is.
     speed : float or ndarray or None
         Speeds as given, or as passages have their own [m/s].
-    settings : dict
-        Keyword arguments of `ensemble` that compute it again, defaults filled in.
     sections : ndarray, shape (section,)
         Where responses are looked at [m].
     supports : ndarray, shape (support,)
@@ -86,8 +73,6 @@ class Ensemble:
         Threads at most.
     elapsed : float
         Time that it took [s].
-    warnings : tuple of str
-        All that was warned of in these crossings and their measured roads, but damping.
     shares_geometry : bool
         Whether the samples were marched side by side; if not, each was a crossing of its own, which
         takes 15 to 20 times as long.
@@ -163,9 +148,14 @@ class Ensemble:
     def _looks_at(self, of: Response) -> bool:
         return of.axis == "axle" or of.name in self.quantities
 
-    def _places(self, of: Response) -> Array:
+    def places(self, axis: Axis) -> Array:
         """Positions of the sections, supports or clamps [m], or numbers of the axles from 1."""
-        return places(self, of.axis, self._rows.axles)
+        return {
+            "section": self.sections,
+            "support": self.supports,
+            "clamp": self.bridge.clamps,
+            "axle": np.arange(1.0, self._rows.axles + 1.0),
+        }[axis]
 
     def _extremes(self, name: str) -> SampleExtremes:
         """Of one part of a response, or of the axle loads."""
@@ -178,11 +168,12 @@ class Ensemble:
             smallest = all_ + largest
             statics = rows.frozen_statics(largest, width), rows.frozen_statics(smallest, width)
         return SampleExtremes(
-            self._places(of),
+            self.places(of.axis),
             rows.numbers[:, largest : largest + width],
             rows.numbers[:, smallest : smallest + width],
             *statics,
-            Instants(self, largest, smallest, width),
+            lambda: self._when(largest, width),
+            lambda: self._when(smallest, width),
         )
 
     @property
@@ -190,9 +181,9 @@ class Ensemble:
         have = ", ".join(self.quantities)
         return f"was not looked at; this ensemble has {have} (give quantities)"
 
-    def _moments(self, start: int, width: int) -> Moments:
+    def _when(self, start: int, width: int) -> When:
         """Times and positions of some of the extremes, counted through responses and loads."""
-        return self._rows.moments(start, width, self._plan.front_speeds)
+        return self._rows.when(start, width, self._plan.front_speeds)
 
     @cached_property
     def _envelopes(self) -> dict[str, SampleExtremes]:
@@ -279,7 +270,7 @@ class Ensemble:
             start, width = self._rows.place(name)
             if place < start + width:
                 break
-        x = self._places(parts()[name])[place - start]
+        x = self.places(parts()[name].axis)[place - start]
         side = "smallest" if smallest else "largest"
         return f"{side} {name.replace('_', ' ')} at x = {x:.3f} m"
 

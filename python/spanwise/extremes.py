@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ Array: TypeAlias = NDArray[np.float64]
 ROUNDING: Final = 1e-9
 
 #: When, and where the front axle is then, for the largest or the smallest values.
-Moments: TypeAlias = tuple[Array, Array]
+When: TypeAlias = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -122,64 +122,60 @@ class SampleExtremes(Value):
     min: Array
     static_max: Array
     static_min: Array
-    _moments: Callable[[bool], Moments] = field(compare=False)
+    _when_max: Callable[[], When] = field(compare=False)
+    _when_min: Callable[[], When] = field(compare=False)
 
     @cached_property
-    def _largest(self) -> Moments:
-        time, position = self._moments(True)
+    def _at_max(self) -> When:
+        time, position = self._when_max()
         return frozen(time), frozen(position)
 
     @cached_property
-    def _smallest(self) -> Moments:
-        time, position = self._moments(False)
+    def _at_min(self) -> When:
+        time, position = self._when_min()
         return frozen(time), frozen(position)
-
-    def _when(self, largest: bool) -> Moments:
-        return self._largest if largest else self._smallest
 
     def _parts(self) -> Iterator[object]:
         """What is compared: times and positions too."""
-        yield from super()._parts()
-        yield from (self._largest, self._smallest)
+        yield from (*super()._parts(), self._at_max, self._at_min)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickled with its times and positions."""
-        own = [getattr(self, each.name) for each in fields(self) if each.compare]
-        return SampleExtremes, (*own, Known(self._largest, self._smallest))
+        return _known, tuple(self._parts())
 
     @property
     def max_time(self) -> Array:
         """When the largest values occur [s], shape (sample, section)."""
-        return self._when(True)[0]
+        return self._at_max[0]
 
     @property
     def max_position(self) -> Array:
         """Where the front axle is then [m], shape (sample, section)."""
-        return self._when(True)[1]
+        return self._at_max[1]
 
     @property
     def min_time(self) -> Array:
         """When the smallest values occur [s], shape (sample, section)."""
-        return self._when(False)[0]
+        return self._at_min[0]
 
     @property
     def min_position(self) -> Array:
         """Where the front axle is then [m], shape (sample, section)."""
-        return self._when(False)[1]
+        return self._at_min[1]
 
     def __repr__(self) -> str:
         return f"SampleExtremes({self.max.shape[0]} samples, {self.max.shape[1]} columns)"
 
     def merged(self, other: SampleExtremes) -> SampleExtremes:
         """The larger of the largest and the smaller of the smallest: a shear on both sides."""
-
         return SampleExtremes(
             self.x,
             frozen(larger(self.max, other.max)),
             frozen(-larger(-self.min, -other.min)),
             frozen(larger(self.static_max, other.static_max)),
             frozen(-larger(-self.static_min, -other.static_min)),
-            Merged(self, other),
+            lambda: _either(other.max > self.max, other._at_max, self._at_max),
+            lambda: _either(self.min > other.min, other._at_min, self._at_min),
         )
 
     def of(self, sense: Sense) -> tuple[Array, Array]:
@@ -211,30 +207,14 @@ class SampleExtremes(Value):
         return any(differ(each) for each in (self.static_max, self.static_min))
 
 
-@dataclass(frozen=True)
-class Known:
-    """Times and positions that are known already."""
-
-    largest: Moments
-    smallest: Moments
-
-    def __call__(self, largest: bool) -> Moments:
-        return self.largest if largest else self.smallest
+def _known(*parts: Any) -> SampleExtremes:
+    """Extremes whose times and positions are known already."""
+    return SampleExtremes(*parts[:-2], lambda: parts[-2], lambda: parts[-1])
 
 
-@dataclass(frozen=True)
-class Merged:
-    """Times and positions of the larger or smaller of two."""
-
-    one: SampleExtremes
-    other: SampleExtremes
-
-    def __call__(self, largest: bool) -> Moments:
-        one, other = self.one, self.other
-        pairs = (one.max, other.max) if largest else (other.min, one.min)
-        second = pairs[1] > pairs[0]
-        mine, others = one._when(largest), other._when(largest)
-        return np.where(second, others[0], mine[0]), np.where(second, others[1], mine[1])
+def _either(where: NDArray[np.bool_], first: When, second: When) -> When:
+    """Times and positions of the first there, elsewhere of the second."""
+    return np.where(where, first[0], second[0]), np.where(where, first[1], second[1])
 
 
 def larger(a: Array, b: Array) -> Array:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._computed import Computed
-from spanwise.bridge import Bridge
-from spanwise.quantities import Axis, of_bridges, telling
+from spanwise.quantities import of_bridges, telling
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -57,22 +56,3 @@ class Responses:
     def __repr__(self) -> str:
         core = self._computed.core
         return f"Responses({len(core.sections)} sections, {core.steps + 1} instants)"
-
-
-class Along(Protocol):
-    """Results along a bridge."""
-
-    bridge: Bridge
-    sections: Array
-
-    @property
-    def supports(self) -> Array: ...
-
-
-def places(of: Along, axis: Axis, axles: int) -> Array:
-    """Positions of the sections, supports or clamps [m], or numbers of so many axles from 1."""
-    if axis == "section":
-        return of.sections
-    if axis == "axle":
-        return np.arange(1.0, axles + 1.0)
-    return of.supports if axis == "support" else of.bridge.clamps

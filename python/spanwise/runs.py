@@ -24,7 +24,7 @@ from spanwise.extremes import Envelope, Extremes
 from spanwise.impact_factors import DEFINITIONS, ImpactFactors
 from spanwise.motions import BodyMotion, ContactLoss, LiftOff, ModalMotion, Motion, VehicleMotion
 from spanwise.quantities import RESPONSES, Axis, Response, factors, response, telling, there_are
-from spanwise.responses import Responses, places
+from spanwise.responses import Responses
 from spanwise.roads import Road
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
@@ -63,8 +63,6 @@ class Run(Responses):
         Static axle loads [N], of all vehicles in their order.
     static : Responses
         Responses to the static axle loads at the same positions.
-    dynamic_load_coefficients : ndarray, shape (axle,)
-        Root mean square of each axle load about its static value, by that value [-].
     final_speed : float
         Speed of the first vehicle at the end [m/s].
     tail : float
@@ -79,14 +77,8 @@ class Run(Responses):
         none, NaN where a vehicle stands on the bridge.
     lift_offs : tuple of LiftOff
         Every time a wheel was off the road, on the approach too, until the last axle had left.
-    contact_loss : ContactLoss
-        The same in numbers for each axle.
-    axles : list of tuple of int
-        Numbers of vehicle and axle, from 1, of each column by axle.
     steps : int
         Number of time steps.
-    warnings : tuple of str
-        All that was warned of in this crossing and its measured roads, but damping.
     """
 
     def __init__(
@@ -309,7 +301,12 @@ class Run(Responses):
 
     def places(self, axis: Axis) -> Array:
         """Positions of the sections, supports or clamps [m], or numbers of the axles from 1."""
-        return places(self, axis, len(self.static_axle_loads))
+        return {
+            "section": self.sections,
+            "support": self.supports,
+            "clamp": self.bridge.clamps,
+            "axle": np.arange(1.0, len(self.static_axle_loads) + 1.0),
+        }[axis]
 
     @telling
     def envelope(self, quantity: str) -> Envelope:

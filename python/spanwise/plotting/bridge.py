@@ -41,7 +41,7 @@ CROWD: Final = 8
 
 
 class BridgePlot:
-    """Figures of a bridge, reached as ``bridge.plot``."""
+    """Figures of a bridge, reached as ``bridge.plot``; each draws into what it is given."""
 
     def __init__(self, bridge: Bridge) -> None:
         self._bridge = bridge
@@ -52,15 +52,6 @@ class BridgePlot:
 
         Dots are masses, their area in proportion; open circles are hinges. Coils are springs, a
         spiral one for the rotation. Letters name the supports.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         ax = axes_for(ax, height=1.75)
         draw_bridge(ax, self._bridge, self._bridge.supports)
@@ -74,15 +65,6 @@ class BridgePlot:
 
         These are all supports between the first and the last one. Where they were is drawn as open
         circles: they stay reference stations (Kishan and Traill-Nash 1973, Fig. 3).
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         ax = axes_for(ax, height=1.75)
         supports = self._bridge.supports
@@ -112,12 +94,6 @@ class BridgePlot:
         ----------
         count : int, optional
             How many.
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         bridge = self._bridge
         count = whole_number("count", count)
@@ -170,12 +146,6 @@ class BridgePlot:
             The section, or the support for a reaction [m].
         structure : {"actual", "basic"}, optional
             The bridge with or without its hinges and intermediate redundant supports.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         bridge = self._bridge
         at = finite("at", at)
@@ -205,17 +175,7 @@ class SettlementPlot:
 
     @styled
     def __call__(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """Deflection, and below it the bending moment, both drawn downward.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Deflection, and below it the bending moment, both drawn downward."""
         found = self._settlement
         figure = figure_for(figure, 4.4)
         above, below = figure.subplots(2, 1, sharex=True)

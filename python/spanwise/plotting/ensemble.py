@@ -50,7 +50,7 @@ Rows: TypeAlias = NDArray[np.float64]
 
 
 class EnsemblePlot:
-    """Figures of an ensemble, as methods; each takes the axes to draw into, or makes a figure."""
+    """Figures of an ensemble, reached as ``ensemble.plot``; each draws into what it is given."""
 
     def __init__(self, ensemble: Ensemble) -> None:
         self._ensemble = ensemble
@@ -66,12 +66,6 @@ class EnsemblePlot:
             Of what, as in `Ensemble.impact_factors`:
 
             {factors}
-        ax : Axes, optional
-            Where to draw; a new figure by default.
-
-        Returns
-        -------
-        Figure
 
         Raises
         ------
@@ -141,12 +135,6 @@ class EnsemblePlot:
             The response:
 
             {bridge}
-        ax : Axes, optional
-            Where to draw; a new figure by default.
-
-        Returns
-        -------
-        Figure
 
         Raises
         ------

@@ -51,7 +51,7 @@ SCALE: Final = 0.55
 
 
 class RunPlot:
-    """Figures of a run, reached as ``run.plot``."""
+    """Figures of a run, reached as ``run.plot``; each draws into what it is given."""
 
     def __init__(self, run: Run) -> None:
         self._run = run
@@ -72,12 +72,6 @@ class RunPlot:
             Where the front axle stands [m], of a vehicle alone.
         time : float, optional
             When [s], in place of that; by default when the static axle loads bend the bridge most.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         run = self._run
         if front_axle is not None and len(run.passages) > 1:
@@ -131,12 +125,6 @@ class RunPlot:
             The response:
 
             {responses}
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         of = response(quantity)
         ax = axes_for(ax)
@@ -148,17 +136,7 @@ class RunPlot:
 
     @styled
     def impact_factors(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """Impact factors along the bridge, blank where masked.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Impact factors along the bridge, blank where masked."""
         run, factors = self._run, self._run.impact_factors
         titles = along_bridge()
         rows = (len(titles) + 1) // 2
@@ -206,12 +184,6 @@ class RunPlot:
         side : {"left", "right"}, optional
             Side of the section at which the shear is taken; by default the right one, but at the
             right end of the bridge the left one.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         run, of = self._run, response(quantity)
         where, dynamic, static = column(run, of, at, side)
@@ -238,12 +210,6 @@ class RunPlot:
         ----------
         number : int, optional
             Number of the vehicle, from 1.
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         run = self._run
         chosen = count("number", number)
@@ -299,17 +265,7 @@ class RunPlot:
 
     @styled
     def road(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """The road where wheels pass, with the bridge as a band, and the spectrum of all of it.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """The road where wheels pass, with the bridge as a band, and the spectrum of all of it."""
         run = self._run
         paths = [motion.axle_positions for motion in run.vehicles]
         first, last = run.road.ends
