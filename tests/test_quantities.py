@@ -29,6 +29,7 @@ ROTATION = Response(
     axis="section",
     signs=("clockwise", "anticlockwise"),
     title="Rotation",
+    influence=False,
     reported=("positive", "negative"),
     factors=(Factor("turning", "either", "Rotation"),),
 )

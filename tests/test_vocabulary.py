@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
+from spanwise._value import same
 
 BRIDGE = sw.Bridge(
     length=30.0,
@@ -131,6 +132,29 @@ def test_old_names(old: str, new: str, use: Any) -> None:
         assert_array_equal(found, expected)
     else:
         assert found is expected
+
+
+@pytest.mark.parametrize(
+    ("of", "old", "new"),
+    [
+        (MANY, "off_road", "contact_loss"),
+        (MANY, "load_coefficients", "dynamic_load_coefficients"),
+        (RUN, "off_road", "contact_loss"),
+        (RUN, "load_coefficients", "dynamic_load_coefficients"),
+        (RUN.vehicle, "suspension_shortenings", "suspension_travel"),
+    ],
+)
+def test_names_of_the_field(of: Any, old: str, new: str) -> None:
+    name = type(of).__name__
+    with pytest.warns(DeprecationWarning, match=rf"{name}\.{old} is now {name}\.{new};") as told:
+        found = getattr(of, old)
+    assert told[0].filename == __file__
+    assert same(found, getattr(of, new))
+
+
+def test_where_the_function_was() -> None:
+    with pytest.warns(DeprecationWarning, match=r"is now spanwise\.study\.ensemble"):
+        assert getattr(sw.ensembles, "ensemble") is sw.ensemble  # noqa: B009
 
 
 def test_what_there_never_was() -> None:

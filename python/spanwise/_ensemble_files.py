@@ -14,6 +14,7 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from spanwise import _core
+from spanwise._conditions import Conditions
 from spanwise._files import write_files
 from spanwise._plain import from_plain, plain
 from spanwise._plan import Plan
@@ -179,8 +180,9 @@ def _plan(tables: Mapping[str, Any]) -> Plan:
         for each in tables["events"]
     ]
     given["road"] = from_table(given["road"])
-    optional = dict.fromkeys(signature(plan_of).parameters)
-    del optional["bridge"], optional["vehicle"]
+    optional = dict.fromkeys((*signature(plan_of).parameters, *signature(Conditions.of).parameters))
+    for each in ("bridge", "vehicle", "conditions", "uneven"):
+        del optional[each]
     plan, _ = plan_of(bridge_of(tables["bridge"]), events, **{**optional, **given})
     return plan
 

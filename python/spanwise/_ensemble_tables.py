@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import choice
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise._files import write_files
 from spanwise.ensembles import By, Ensemble
 from spanwise.extremes import largest_of_each

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from io import BytesIO
 
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise.runs import Run
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 from numpy.typing import ArrayLike
 
 from spanwise._checks import count, flag, named, number, shown, whole_from
-from spanwise._conditions import Conditions, Recovery
+from spanwise._conditions import Conditions
 from spanwise._events import (
     Speeds,
     events_of,
@@ -22,7 +22,6 @@ from spanwise._plan import Plan
 from spanwise._variation import factors_of, refuse_overdamped
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
-from spanwise.damping import Damping
 from spanwise.quantities import of_bridges, there_are
 from spanwise.roads import Road
 from spanwise.traffic import Drive, drive_of
@@ -44,23 +43,15 @@ def plan_of(
     kind: ArrayLike | None,
     factors: Mapping[str, ArrayLike] | None,
     values: Mapping[str, ArrayLike] | None,
-    modes: int | None,
     drive: Drive,
-    damping: Damping | None,
-    approach: float | None,
-    ramp: float | None,
-    tail: float | None,
-    sections: Sequence[float] | None,
     quantities: Sequence[str] | None,
-    recovery: Recovery,
     advance: float | None,
-    step: float | None,
-    beta: float,
-    gravity: float,
-    lift_off: bool,
-    mask: float,
+    **conditions: Any,
 ) -> tuple[Plan, Speeds]:
-    """What the arguments of `ensemble` come to, and the speeds as they were given."""
+    """What the arguments of `ensemble` come to, and the speeds as they were given.
+
+    Conditions are those arguments that `Conditions.of` takes.
+    """
     if not isinstance(bridge, Bridge):
         raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     events = events_of(vehicle)
@@ -76,24 +67,13 @@ def plan_of(
     refuse_unused(speeds, events, driven)
     shared, own = own_road(surface, events, own_roads)
     varied = factors_of(factors, values, events, kinds, samples)
-    conditions = Conditions.of(
+    common = Conditions.of(
         bridge,
         uneven=own is not None
         or not all((each.road or shared).is_smooth for event in events for each in event),
-        modes=modes,
-        damping=damping,
-        approach=approach,
-        ramp=ramp,
-        tail=tail,
-        sections=sections,
-        recovery=recovery,
-        step=step,
-        beta=beta,
-        gravity=gravity,
-        lift_off=lift_off,
-        mask=mask,
+        **conditions,
     )
-    refuse_overdamped(varied, conditions.core["damping"], first)
+    refuse_overdamped(varied, common.core["damping"], first)
     looked_at = _quantities(bridge, quantities)
     told = speeds_told(speeds, events, kinds, samples, driven)
     settings: dict[str, Any] = {
@@ -105,13 +85,13 @@ def plan_of(
         "own_roads": own_roads,
         "kind": kinds if len(events) > 1 else None,
         "factors": {each.name: each.plain for each in varied} or None,
-        "modes": conditions.modes,
+        "modes": common.modes,
         "drive": driven,
-        **conditions.settings,
-        "sections": conditions.core["sections"],
+        **common.settings,
+        "sections": common.core["sections"],
         "quantities": [*looked_at],
         "advance": advance,
-        "step": conditions.core["step"],
+        "step": common.core["step"],
     }
     plan = Plan(
         bridge=bridge,
@@ -125,7 +105,7 @@ def plan_of(
         road=shared,
         own=own,
         factors=varied,
-        conditions=conditions,
+        conditions=common,
         quantities=tuple(looked_at),
         advance=advance,
         settings={key: value for key, value in settings.items() if value is not None},
@@ -135,7 +115,7 @@ def plan_of(
 
 def all_quantities(bridge: Bridge) -> list[str]:
     """What there is to look at; without a clamp no moments of clamps."""
-    return [each.name for each in there_are(bridge.missing, len(bridge.clamps) > 0)]
+    return [each.name for each in there_are(bridge.missing, clamps=len(bridge.clamps) > 0)]
 
 
 def _quantities(bridge: Bridge, given: object) -> list[str]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from spanwise._checks import file_path
 from spanwise._core import __version__
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise._files import write_files
 from spanwise._plain import json_lines, plain
 from spanwise._traffictable import is_alone, passage_table

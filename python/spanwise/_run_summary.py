@@ -227,20 +227,21 @@ def _governing(run: Run) -> Table:
     """The largest response of each kind: where and when, beside the static one at that place."""
     heads = ["largest", "dynamic", "at", "time [s]", "front axle [m]", "static", "factor"]
     forms = ["<", ".3f", "<", ".4f", ".3f", ".3f", ".3f"]
-    return Table(
-        heads, [row for each in run.responses for row in _rows(run, each)], forms, GOVERNING
-    )
+    rows = [row for each in run.responses for row in _rows(run, each)]
+    return Table(heads, rows, forms, GOVERNING)
 
 
 def _rows(run: Run, of: Response) -> Iterator[list[object]]:
     """The extremes that are always told, and what goes the other way if it is more than nothing."""
     envelope, (unit, scale) = run.envelope(of.name), of.shown
+    if len(envelope.x) == 0:
+        return
     senses: list[Sense] = [*of.reported]
     if senses == ["positive"] and envelope.min.value.min() < -OPPOSITE * envelope.max.value.max():
         senses.append("negative")
-    x = run.places(of.axis)
-    places = run.axle_names if of.axis == "axle" else [f"x = {each:.3f} m" for each in x]
-    for sense in senses if len(x) else []:
+    axles = of.axis == "axle"
+    places = run.axle_names if axles else [f"x = {x:.3f} m" for x in envelope.x]
+    for sense in senses:
         dynamic, static = envelope.of(sense)
         sign = {"positive": 1.0, "negative": -1.0}.get(sense)
         i = int(np.argmax(np.abs(dynamic.value) if sign is None else sign * dynamic.value))

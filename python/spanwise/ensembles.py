@@ -161,11 +161,12 @@ class Ensemble:
         """Of one part of a response, or of the axle loads."""
         rows, of = self._rows, parts()[name]
         if of.axis == "axle":
-            width, ((largest, _), static) = rows.axles, (rows.columns[name], self.static_axle_loads)
-            smallest, statics = largest + width, (static, static)
+            largest, width = rows.columns[name][0], rows.axles
+            smallest = largest + width
+            statics = self.static_axle_loads, self.static_axle_loads
         else:
-            (largest, width), all_ = rows.place(name), rows.responses
-            smallest = all_ + largest
+            largest, width = rows.place(name)
+            smallest = largest + rows.responses
             statics = rows.frozen_statics(largest, width), rows.frozen_statics(smallest, width)
         return SampleExtremes(
             self.places(of.axis),
@@ -586,3 +587,13 @@ class SampleFactors(ByName):
 
     def __repr__(self) -> str:
         return f"SampleFactors({self._ensemble.samples} samples, {len(self.sections)} sections)"
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """The function of the same name, where it was before."""
+        if name == "ensemble":
+            renamed("spanwise.ensembles.ensemble", "spanwise.study.ensemble")
+            return view("study.ensemble")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, Final, TypeAlias
 
@@ -139,9 +139,12 @@ class SampleExtremes(Value):
         """What is compared: times and positions too."""
         yield from (*super()._parts(), self._at_max, self._at_min)
 
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickled with its times and positions."""
-        return _known, tuple(self._parts())
+    def __getstate__(self) -> dict[str, Any]:
+        """With its times and positions, in place of what finds them."""
+        known = {"_at_max": self._at_max, "_at_min": self._at_min}
+        return {
+            each.name: getattr(self, each.name) for each in fields(self) if each.compare
+        } | known
 
     @property
     def max_time(self) -> Array:
@@ -205,11 +208,6 @@ class SampleExtremes(Value):
     def static_varies(self) -> bool:
         """Whether static values differ from sample to sample, by more than rounding."""
         return any(differ(each) for each in (self.static_max, self.static_min))
-
-
-def _known(*parts: Any) -> SampleExtremes:
-    """Extremes whose times and positions are known already."""
-    return SampleExtremes(*parts[:-2], lambda: parts[-2], lambda: parts[-1])
 
 
 def _either(where: NDArray[np.bool_], first: When, second: When) -> When:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import named
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise._table import Block, Table, html, text
 from spanwise._value import Value
 from spanwise.quantities import Axis, factors, telling

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias, TypeVar
 
@@ -67,6 +67,8 @@ class Response:
         Whether figures draw positive values downward.
     sided : bool
         Whether the left and the right of a section differ.
+    influence : bool
+        Whether there are influence lines of it.
     reported : tuple of {"positive", "negative", "either"}
         The extremes that summaries show always; others only where they are worth it.
     factors : tuple of Factor
@@ -80,6 +82,7 @@ class Response:
     title: str
     downward: bool = False
     sided: bool = False
+    influence: bool = True
     reported: tuple[Sense, ...] = ("either",)
     factors: tuple[Factor, ...] = ()
 
@@ -96,7 +99,8 @@ class Response:
     @property
     def lines(self) -> tuple[str, ...]:
         """Names of its influence lines."""
-        return tuple(_one(each).replace(" ", "-") for each in self.parts)
+        parts = self.parts if self.influence else ()
+        return tuple(_one(each).replace(" ", "-") for each in parts)
 
     @property
     def shown(self) -> tuple[str, float]:
@@ -219,32 +223,28 @@ def influence_lines() -> dict[str, Response]:
     return {name: each for each in (*of_bridges(), *LINES_ONLY) for name in each.lines}
 
 
-def response(value: str, key: str = "quantity") -> Response:
+def response(quantity: str) -> Response:
     """The response that is meant, with hyphens or underscores, in singular or plural."""
-    return RESPONSES[named(key, value, RESPONSES)]
+    return RESPONSES[named("quantity", quantity, RESPONSES)]
 
 
-def there_are(missing: Iterable[str], clamps: bool) -> list[Response]:
+def there_are(missing: Sequence[str], *, clamps: bool) -> list[Response]:
     """Those of a bridge that was given without some lines, and may have clamps."""
-    left = {*missing}
-    return [
-        each
-        for each in of_bridges()
-        if left.isdisjoint(each.lines) and (clamps or each.axis != "clamp")
-    ]
+    known = [each for each in of_bridges() if not any(line in missing for line in each.lines)]
+    return [each for each in known if clamps or each.axis != "clamp"]
 
 
 def telling(target: T) -> T:
     """Let a docstring name them all where it says ``{responses}``, ``{parts}`` or ``{factors}``."""
-    words = {
-        "responses": (f'``"{each.name}"`` [{each.unit}]' for each in RESPONSES.values()),
-        "bridge": (f'``"{each.name}"`` [{each.unit}]' for each in of_bridges()),
-        "parts": (f'``"{name}"`` [{each.unit}]' for name, each in parts(whole=True).items()),
-        "factors": (f'``"{name}"``' for name in factors()),
+    units = {
+        "responses": {each.name: f" [{each.unit}]" for each in RESPONSES.values()},
+        "bridge": {each.name: f" [{each.unit}]" for each in of_bridges()},
+        "parts": {name: f" [{each.unit}]" for name, each in parts(whole=True).items()},
+        "factors": dict.fromkeys(factors(), ""),
     }
 
     def filled(found: re.Match[str]) -> str:
-        text = ", ".join(words[found[2]]) + "."
+        text = ", ".join(f'``"{name}"``{unit}' for name, unit in units[found[2]].items()) + "."
         return textwrap.fill(text, 100, initial_indent=found[1], subsequent_indent=found[1])
 
     target.__doc__ = re.sub(r"^( *)\{(\w+)\}$", filled, target.__doc__ or "", flags=re.MULTILINE)

@@ -133,7 +133,7 @@ class Run(Responses):
     @property
     def responses(self) -> list[Response]:
         """What there is: all that the bridge knows, without a clamp no clamp moments."""
-        of_bridge = there_are(self.bridge.missing, len(self.bridge.clamps) > 0)
+        of_bridge = there_are(self.bridge.missing, clamps=len(self.bridge.clamps) > 0)
         return [each for each in RESPONSES.values() if each in of_bridge or each.axis == "axle"]
 
     @cached_property

@@ -173,34 +173,9 @@ def ensemble(
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
-    plan, speeds = plan_of(
-        bridge,
-        vehicle,
-        samples=samples,
-        seed=seed,
-        first=first,
-        speed=speed,
-        road=road,
-        own_roads=own_roads,
-        kind=kind,
-        factors=factors,
-        values=values,
-        modes=modes,
-        drive=drive,
-        damping=damping,
-        approach=approach,
-        ramp=ramp,
-        tail=tail,
-        sections=sections,
-        quantities=quantities,
-        recovery=recovery,
-        advance=advance,
-        step=step,
-        beta=beta,
-        gravity=gravity,
-        lift_off=lift_off,
-        mask=mask,
-    )
+    given = {**locals()}  # all arguments by name
+    del given["threads"], given["progress"]
+    plan, speeds = plan_of(**given)
     conditions, events = plan.conditions, plan.events
     for remark in plan.idle():
         warn(remark)

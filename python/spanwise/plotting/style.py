@@ -7,7 +7,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
 from spanwise._checks import shown
-from spanwise._extras import require
+from spanwise._door import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
