@@ -144,15 +144,10 @@ def _speeds(parts: Sequence[Speeds], counts: Sequence[int]) -> Speeds:
     first = parts[0].given
     if not isinstance(first, np.ndarray) and all(same(each.given, first) for each in parts):
         return parts[0]
-    rows = [each.column.reshape(-1, _width(each, n)) for each, n in zip(parts, counts, strict=True)]
+    rows = [each.rows(n) for each, n in zip(parts, counts, strict=True)]
     column = _column(rows, counts)
     given = column[:, 0] if column.shape[1] == 1 else column
     return Speeds(given, np.ascontiguousarray(column).ravel())
-
-
-def _width(speeds: Speeds, samples: int) -> int:
-    """Speeds of a sample."""
-    return len(speeds.column) // samples if len(speeds.column) > 1 else 1
 
 
 def _column(parts: Sequence[Array], counts: Sequence[int]) -> Array:

@@ -10,17 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._events import Event
-from spanwise._plan import Plan
 from spanwise._shown import many, warned
 from spanwise._table import Block, Table, html, listed, text
-from spanwise._variation import Factors
 from spanwise.damping import in_words
 from spanwise.ensembles import Ensemble
 from spanwise.extremes import ROUNDING, SampleExtremes, differ, largest_of_each, quotients
 from spanwise.quantities import Response, factors
 from spanwise.roads import ISO8608, Road, Sum
 from spanwise.traffic import Passage, plain_drive
-from spanwise.traffic import Speeds as SpeedsInTime
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -104,8 +101,8 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
     else:
         yield f"road      {_road(plan.road, plan.own)}"
     for each in plan.factors:
-        yield _factor(each)
-    if ensemble.samples > 1 and _alike(plan):
+        yield str(each)
+    if ensemble.samples > 1 and plan.alike:
         yield "note      all samples are alike: nothing is random"
     yield (
         f"crossing  approach {settings['approach']:g} m; recovery by {settings['recovery']}; "
@@ -173,30 +170,6 @@ def _span(values: Array, form: str) -> str:
     """One value, or the least and the largest."""
     least, most = format(values.min(), form), format(values.max(), form)
     return least if least == most else f"{least} to {most}"
-
-
-def _factor(factors: Factors) -> str:
-    values = factors.values
-    if values.size == 0:
-        return f"varied    {factors.name}"
-    if (values == values[0]).all():
-        found = ", ".join(f"{each:.4g}" for each in values[0])
-        if (values[0] == values[0, 0]).all():
-            found = f"{values[0, 0]:.4g}"
-        return f"factor    {factors.name} {found} for all samples"
-    return f"varied    {factors.name} from {values.min():.4g} to {values.max():.4g}"
-
-
-def _alike(plan: Plan) -> bool:
-    """Whether all samples are the same crossing."""
-    used = np.unique(plan.kinds) if len(plan.kinds) else np.zeros(1, dtype=np.uint32)
-    by_sample = [each.values for each in plan.factors]
-    for passage in plan.event(0):
-        if passage.speed is None and not isinstance(passage.drive or plan.drive, SpeedsInTime):
-            column = plan.speeds.column
-            by_sample.append(column.reshape(1 if len(column) == 1 else plan.samples, -1))
-    constant = all((each == each[:1]).all() for each in by_sample)
-    return plan.own is None and len(used) == 1 and constant
 
 
 def _step(ensemble: Ensemble) -> str:
@@ -289,7 +262,7 @@ def _few(ensemble: Ensemble) -> Iterator[str]:
     """Which of the percentiles rest on too few samples."""
     samples = ensemble.samples - len(ensemble.failures)
     weak = [f"{p:g} %" for p in PERCENTILES if p * samples > 100.0 * (samples - BEYOND)]
-    if not weak or _alike(ensemble._plan):
+    if not weak or ensemble._plan.alike:
         return
     listed = " and ".join(filter(None, [", ".join(weak[:-1]), weak[-1]]))
     yield f"of {many(samples, 'sample')} {listed} say little: fewer than {BEYOND} lie beyond"

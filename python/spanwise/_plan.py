@@ -70,14 +70,24 @@ class Plan(Value):
         return len(self.events) > 1 or any(each.name in SHARED_OUT for each in self.factors)
 
     @property
+    def alike(self) -> bool:
+        """Whether all samples are the same crossing."""
+        varied = [each.values for each in self.factors]
+        for passage in self.event(0):
+            if passage.speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
+                varied.append(self.speeds.rows(self.samples))
+        constant = all((each == each[:1]).all() for each in varied)
+        return self.own is None and len(np.unique(self.kinds)) < 2 and constant
+
+    @property
     def front_speeds(self) -> Array:
         """Speeds of the first vehicles at the start [m/s]: of each sample, or of all."""
-        column = self.speeds.column
         own = [event[0].speed for event in self.events]
         if len(own) == 1 and own[0] is not None:
             return np.array([own[0]])
+        column = self.speeds.column
         if len(column) > 1:
-            column = column.reshape(self.samples, -1)[:, 0]
+            column = self.speeds.rows(self.samples)[:, 0]
         if all(each is None for each in own):
             return np.ascontiguousarray(column)
         by_kind = np.array([np.nan if each is None else each for each in own])[self.kinds]
@@ -87,9 +97,7 @@ class Plan(Value):
     def speeds_of_all(self) -> Array:
         """Speeds at the start [m/s], shape (sample, 1) or (sample, vehicle); NaN if by time."""
         vehicles = max(map(len, self.events))
-        column = self.speeds.column
-        given = column.reshape(1 if len(column) == 1 else self.samples, -1)
-        found = np.broadcast_to(given, (self.samples, vehicles)).copy()
+        found = np.broadcast_to(self.speeds.rows(self.samples), (self.samples, vehicles)).copy()
         for number, event in enumerate(self.events):
             rows = self.kinds == number if len(self.events) > 1 else slice(None)
             for k in range(vehicles):
@@ -165,8 +173,7 @@ class Plan(Value):
 
         Each vehicle at the highest of its speeds at the start.
         """
-        column = self.speeds.column
-        speeds = column.reshape(1 if len(column) == 1 else self.samples, -1)
+        speeds = self.speeds.rows(self.samples)
         if len(self.events) == 1:
             most = speeds.max(axis=0, keepdims=True)
         else:
