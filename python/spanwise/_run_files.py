@@ -95,29 +95,12 @@ def json_text(run: Run) -> str:
 
 
 def write_json(run: Run, path: str | Path) -> None:
-    """Write `as_dict` to a JSON file.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; then there is none, or the old one.
-    """
+    """The file, complete or not at all."""
     write_files([(file_path("path", path), [json_text(run).encode()])])
 
 
 def write_csv(run: Run, directory: str | Path) -> None:
-    """Write impact factors, extremes and histories into a folder, which is made if there is none.
-
-    The files are ``impact_factors.csv``, ``lift_offs.csv``, ``envelope_<quantity>.csv``,
-    ``history_<quantity>.csv`` and ``history_vehicle.csv``, or ``history_vehicle_<number>.csv`` for
-    each of several vehicles. Axles are numbered through all vehicles. The first row of a file
-    names the columns and units; numbers have a decimal point and all their digits.
-
-    Raises
-    ------
-    OSError
-        If the folder or a file cannot be written; then no file has been changed.
-    """
+    """The files, all or none."""
     folder = file_path("directory", directory)
     files = [(folder / name, content) for name, content in csv_files(run)]
     write_files(files, folders=[folder])

@@ -373,11 +373,28 @@ class Run(Responses):
         return view("_run_files.as_dict")(self)
 
     def to_json(self, path: str | Path) -> None:
-        """Write `to_dict` to a JSON file."""
+        """Write `to_dict` to a JSON file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
         view("_run_files.write_json")(self, path)
 
     def to_csv(self, directory: str | Path) -> None:
-        """Write impact factors, extremes and histories as CSV files into a directory."""
+        """Write impact factors, extremes and histories into a folder, made if there is none.
+
+        The files are ``impact_factors.csv``, ``lift_offs.csv``, ``envelope_<quantity>.csv``,
+        ``history_<quantity>.csv`` and ``history_vehicle.csv``, or ``history_vehicle_<number>.csv``
+        for each of several vehicles. Axles are numbered through all vehicles. The first row of a
+        file names the columns and units; numbers have a decimal point and all their digits.
+
+        Raises
+        ------
+        OSError
+            If the folder or a file cannot be written; then no file has been changed.
+        """
         view("_run_files.write_csv")(self, directory)
 
     def to_pandas(self, quantity: str = "moment") -> pd.DataFrame:

@@ -39,12 +39,6 @@ def compare_impact_factors(
         The runs by what the legend calls them.
     factor : str, optional
         Which impact factor, one that there is along the bridge.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     for name, each in mapping("runs", runs, "runs by name").items():
         if not isinstance(each, Run):
@@ -87,12 +81,6 @@ def compare_convergence(
         have no place on the logarithmic axis and are left out.
     reference : str, optional
         What the errors are measured from, for the note below the figure.
-    figure : matplotlib.figure.Figure or SubFigure, optional
-        Where to draw; by default a new figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     included = counts("modes", modes)
     if not included:

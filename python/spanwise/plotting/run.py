@@ -142,8 +142,9 @@ class RunPlot:
         rows = (len(titles) + 1) // 2
         figure = figure_for(figure, 0.7 + 1.8 * rows)
         panels = [*figure.subplots(rows, 2, sharex=True, squeeze=False).flat]
-        for ax in panels[len(titles) :]:
+        for ax, above in zip(panels[len(titles) :], panels[len(titles) - 2 :], strict=False):
             ax.remove()
+            above.xaxis.set_tick_params(labelbottom=True)
         for ax, (factor, name) in zip(panels, titles.items(), strict=False):
             zero_line(ax, at=1.0)
             values = getattr(factors, factor)
