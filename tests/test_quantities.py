@@ -151,6 +151,12 @@ def test_texts_and_files_of_a_run_have_it(run: sw.Run, tmp_path: Path) -> None:
     assert frame.columns.name == "x [m]"
 
 
+def test_what_a_bridge_has_not_is_an_empty_frame(run: sw.Run) -> None:
+    assert run.to_pandas("clamp_moments").shape == (run.steps + 1, 0)
+    assert "clamp_moments" not in {each.name for each in run.responses}
+    assert "clamp moment" not in run.summary()
+
+
 def test_figures_have_it(run: sw.Run, many: sw.Ensemble) -> None:
     for figure in (
         run.plot.envelope("rotations"),

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from spanwise._shown import warned
 from spanwise._table import Block, Table, html, listed, text
 from spanwise._traffictable import is_alone
-from spanwise._wheels import Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
 from spanwise.layout import Support
@@ -101,7 +100,10 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     if unsprung := truck._unsprung:
         masses = listed((each / 1000.0 for each in unsprung), ".4g")
         yield f"          unsprung masses {masses} t, included above"
-    yield from _frequencies(truck)
+    ground = truck._frequencies_in_words
+    # Of a few in one line.
+    for words in [", ".join(ground)] if 0 < len(truck.coordinates) <= 2 else ground:
+        yield f"          on rigid ground {words}"
     drive = run.settings["drive"] if passage.drive is None else plain_drive(passage.drive)
     way = [f"{motion.speed[0]:g} m/s", _drive(drive)]
     way.append(f"{motion.speed[-1]:.6g} m/s at the end")
@@ -172,27 +174,6 @@ def _contact_loss(run: Run) -> Iterator[str]:
         ):
             if count > 0:
                 yield f"          {name}: {count}, {total:.3f} s in all, {longest:.3f} s at most"
-
-
-def _frequencies(truck: Wheels) -> Iterator[str]:
-    """Those of the vehicle on rigid ground, in both states if it has two, in lines of a few."""
-    states = {
-        "while friction holds": truck.frequencies(locked=True),
-        "sliding": truck.frequencies(locked=False),
-    }
-    holding, sliding = states.values()
-    if len(holding) == 0:
-        return
-    if np.array_equal(holding, sliding):
-        yield f"          on rigid ground {listed(holding, '.3f')} Hz"
-    elif len(holding) <= 2:
-        yield (
-            f"          on rigid ground {listed(holding, '.3f')} Hz while friction holds, "
-            f"{listed(sliding, '.3f')} Hz sliding"
-        )
-    else:
-        for state, found in states.items():
-            yield f"          on rigid ground {listed(found, '.3f')} Hz {state}"
 
 
 def _support(support: Support) -> str:

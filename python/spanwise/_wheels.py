@@ -12,6 +12,7 @@ from spanwise import _core
 from spanwise._checks import flag, number
 from spanwise._door import view
 from spanwise._shown import many
+from spanwise._table import listed
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -78,6 +79,19 @@ class Wheels:
     def _bodies_in_words(self) -> str:
         """How many bodies there are, if it is made of several."""
         return ""
+
+    @property
+    def _frequencies_in_words(self) -> list[str]:
+        """Those on rigid ground: of both states, if friction makes two."""
+        holding, sliding = (self.frequencies(locked=locked) for locked in (True, False))
+        if len(holding) == 0:
+            return []
+        if np.array_equal(holding, sliding):
+            return [f"{listed(holding, '.3f')} Hz"]
+        return [
+            f"{listed(holding, '.3f')} Hz while friction holds",
+            f"{listed(sliding, '.3f')} Hz sliding",
+        ]
 
     @property
     def _unsprung(self) -> list[float]:

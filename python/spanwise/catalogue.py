@@ -81,14 +81,9 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     loads = vehicle.static_loads() / 1e3
     spacings = listed(vehicle.axle_spacings, ".3f") or 0
     yield f"axles     {listed(loads, '.1f')} kN, {spacings} m apart"
-    holding, sliding = (vehicle.frequencies(locked=locked) for locked in (True, False))
-    if len(holding) == 0:
-        return
-    yield f"coords    {', '.join(vehicle.coordinates)}"
-    rubs = not (holding == sliding).all()
-    yield f"on ground {listed(holding, '.3f')} Hz{' while friction holds' if rubs else ''}"
-    if rubs:
-        yield f"          {listed(sliding, '.3f')} Hz sliding"
+    if ground := vehicle._frequencies_in_words:
+        yield f"coords    {', '.join(vehicle.coordinates)}"
+        yield "on ground " + "\n          ".join(ground)
 
 
 def _tables(name: str, values: Iterable[DataclassInstance]) -> Iterator[str]:
