@@ -179,7 +179,7 @@ def _envelope_rows(run: Run, of: Response) -> Iterator[Row]:
 def _history(run: Run, of: Response) -> Array:
     """Shape (time, column); of a shear the left and the right of each section in turn."""
     values: Array = getattr(run, of.name)
-    return values.reshape(len(values), int(np.prod(values.shape[1:])))
+    return values.reshape(len(run.time), values.size // len(run.time))
 
 
 def _heads(run: Run, of: Response) -> list[str]:
