@@ -189,7 +189,7 @@ def test_results_refuse_what_they_do_not_have() -> None:
     with pytest.raises(ValueError, match='quantity = "shear": was not looked at'):
         _ = found.impact_factors.shear
     with pytest.raises(ValueError, match="quantity = 'moment': must be one of deflection, sagging"):
-        _ = found.impact_factors["moment"]  # type: ignore[index]
+        _ = found.impact_factors["moment"]
     with pytest.raises(ValueError, match="mask = 2: must be a fraction"):
         found.ratios(mask=2.0)
     with pytest.raises(IndexError, match="row 2: must be from 0 to below 2"):

@@ -412,8 +412,8 @@ def test_index_by_segments() -> None:
     said = "IriSegments(6 from 20 m to 130 m, 3.28 to 6.1 m/km, mean 4.35, lead-in 50 m)"
     assert repr(found) == said
     head, first, *_ = str(found).splitlines()
-    assert head == " start [m]     end [m]   IRI [m/km]"
-    assert first == "     20.00       40.00         4.35"
+    assert head == "start [m]  end [m]  IRI [m/km]"
+    assert first == "    20.00    40.00        4.35"
     table = found.to_pandas()
     assert list(table.columns) == ["start [m]", "end [m]", "IRI [m/km]"]
     assert_array_equal(table, np.transpose([found.starts, found.ends, found.values]))

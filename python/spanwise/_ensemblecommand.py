@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from spanwise._ensemblefile import as_dict, npz_writer
+from spanwise._ensemble_files import as_dict, npz_writer
 from spanwise._files import Content, check_targets, write_files
+from spanwise._plain import json_lines
 from spanwise.case import Case, CaseError
-from spanwise.report import json_lines
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction

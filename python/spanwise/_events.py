@@ -126,6 +126,10 @@ class Speeds(Value):
     given: float | Array | None
     column: Array
 
+    def rows(self, samples: int) -> Array:
+        """Shape (sample, 1) or (sample, vehicle); one row where it is the same for all."""
+        return self.column.reshape(1 if len(self.column) == 1 else samples, -1)
+
     def of(self, sample: int, vehicle: int, samples: int) -> float:
         """Of a vehicle of a sample that has none of its own."""
         if len(self.column) == 1:

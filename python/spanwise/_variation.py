@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from spanwise._checks import array, first_of, shown
 from spanwise._events import Event
 from spanwise._keys import suggestion
+from spanwise._table import listed
 from spanwise._value import Value
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Vehicle
@@ -56,6 +57,17 @@ class Factors(Value):
 
     name: str
     values: Array
+
+    def __str__(self) -> str:
+        """What varies from where to where, or by what it differs in all samples."""
+        values = self.values
+        if values.size == 0:
+            return f"varied    {self.name}"
+        if (values == values[0]).all():
+            alike = (values[0] == values[0, 0]).all()
+            found = listed(values[0, :1] if alike else values[0], ".4g")
+            return f"factor    {self.name} {found} for all samples"
+        return f"varied    {self.name} from {values.min():.4g} to {values.max():.4g}"
 
     def of(self, sample: int) -> Factors:
         """Those of one sample."""

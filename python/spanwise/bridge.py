@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise import _core, _given
+from spanwise import _bridge_arrays, _core
 from spanwise._checks import (
     array,
     count,
@@ -23,6 +23,7 @@ from spanwise._checks import (
     shown,
     word,
 )
+from spanwise._door import view
 from spanwise._keys import alike, suggesting
 from spanwise._value import Value, key, same
 from spanwise.layout import (
@@ -36,15 +37,13 @@ from spanwise.layout import (
 from spanwise.layout import (
     supports as supports_of,
 )
+from spanwise.quantities import influence_lines
 
 if TYPE_CHECKING:
     from spanwise.plotting import BridgePlot, SettlementPlot
 
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = Literal["pinned", "clamped", "free"]
-Quantity: TypeAlias = Literal[
-    "deflection", "slope", "moment", "shear-left", "shear-right", "reaction", "clamp-moment"
-]
 Side: TypeAlias = Literal["left", "right"]
 Structure: TypeAlias = Literal["actual", "basic"]
 
@@ -123,9 +122,7 @@ class Settlement(Value):
     @property
     def plot(self) -> SettlementPlot:
         """Its figure, when called; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import SettlementPlot
-
-        return SettlementPlot(self)
+        return view("plotting.SettlementPlot")(self)
 
 
 class Bridge:
@@ -307,8 +304,8 @@ class Bridge:
                 for i, each in enumerate(items("redundants", redundants, "a list of stations"))
             ],
             "path": at if path is None else numbers("path", path),
-            "flexibility": _given.matrix("flexibility", flexibility),
-            "slopes": None if slopes is None else _given.matrix("slopes", slopes),
+            "flexibility": _bridge_arrays.matrix("flexibility", flexibility),
+            "slopes": None if slopes is None else _bridge_arrays.matrix("slopes", slopes),
         }
         arguments: dict[str, Any] = {
             **given,
@@ -320,8 +317,8 @@ class Bridge:
                 support_argument(Support(at=x, vertical=k)) if np.isfinite(k) else x
                 for x, k in given["redundants"]
             ],
-            "flexibility": _given.plain(given["flexibility"]),
-            "slopes": _given.plain(given["slopes"]),
+            "flexibility": _bridge_arrays.plain(given["flexibility"]),
+            "slopes": _bridge_arrays.plain(given["slopes"]),
         }
         return cls._of(_core.Bridge.from_flexibility(**given), {"from_flexibility": arguments})
 
@@ -402,17 +399,17 @@ class Bridge:
             "supports": supports_of("supports", supports),
             "masses": None if masses is None else numbers("masses", masses),
         }
-        both = _given.sides("shapes", shapes)
-        lines = _given.influence_lines(influence, influence_slopes, modal)
+        both = _bridge_arrays.sides("shapes", shapes)
+        lines = _bridge_arrays.influence_lines(influence, influence_slopes, modal)
         core = _core.Bridge.from_modes(
             **given,
             shapes=both,
-            slopes=None if slopes is None else _given.sides("slopes", slopes),
+            slopes=None if slopes is None else _bridge_arrays.sides("slopes", slopes),
             influence=lines,
         )
         for quantity, (values, _), *_ in lines:
             if quantity == "deflection":
-                _given.check_flexibility(
+                _bridge_arrays.check_flexibility(
                     given["path"], given["frequencies"], both[0], given["sections"], values
                 )
         arrays = {
@@ -425,7 +422,7 @@ class Bridge:
         held = [
             support_argument(Support(at=x, vertical=k, rotation=c)) for x, k, c in given["supports"]
         ]
-        plain = {key: _given.plain(value) for key, value in arrays.items()}
+        plain = {key: _bridge_arrays.plain(value) for key, value in arrays.items()}
         return cls._of(core, {"from_modes": {**given, "supports": held, **plain}})
 
     @classmethod
@@ -700,7 +697,7 @@ class Bridge:
 
     def influence_line(
         self,
-        quantity: Quantity,
+        quantity: str,
         at: float,
         x: ArrayLike,
         structure: Structure = "actual",
@@ -739,7 +736,7 @@ class Bridge:
         """
         where = array("x", x)
         line = self._core.influence_line(
-            word("quantity", alike(quantity, get_args(Quantity)), *get_args(Quantity)),
+            word("quantity", alike(quantity, influence_lines()), *influence_lines()),
             number("at", at),
             where.ravel(),
             word("structure", structure, *get_args(Structure)),
@@ -751,9 +748,7 @@ class Bridge:
     @property
     def plot(self) -> BridgePlot:
         """Figures of the bridge; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import BridgePlot
-
-        return BridgePlot(self)
+        return view("plotting.BridgePlot")(self)
 
 
 def bridge_of(arguments: Mapping[str, Any]) -> Bridge:

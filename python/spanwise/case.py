@@ -14,19 +14,19 @@ from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
 from spanwise._keys import Keys, suggestion
+from spanwise._plain import from_plain
 from spanwise._traffictable import OWN, files_in, passage_of, road_in
 from spanwise._value import Hashed
-from spanwise._values import from_plain
 from spanwise._vehicletable import home as vehicle_home
 from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
-from spanwise.ensembles import ensemble
-from spanwise.population import Ensemble
+from spanwise.ensembles import Ensemble
 from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
 from spanwise.roads.table import KINDS as ROADS
 from spanwise.runs import Run
+from spanwise.study import ensemble
 from spanwise.traffic import KINDS as DRIVES
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle

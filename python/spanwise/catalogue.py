@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from spanwise._checks import shown
 from spanwise._keys import suggestion
-from spanwise.trains import ForceTrain
+from spanwise._table import Table, listed
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import PRESETS, AnyVehicle, Preset
 
@@ -23,27 +23,23 @@ LOWEST: Final = 3
 
 def listing() -> str:
     """All presets in a table: axles, mass or weight, length, lowest frequencies, source."""
-    names = max(map(len, PRESETS)) + 1
-    lines = [f"{'preset':<{names}} axles      total  length [m]  frequencies [Hz]       source"]
+    rows = []
     for name, preset in PRESETS.items():
         vehicle = preset()
-        marked = name + ("*" if preset.recalled else "")
         found = vehicle.frequencies(locked=True)
-        sounding = ", ".join(f"{f:.2f}" for f in found[:LOWEST]) or "-"
+        sounding = listed(found[:LOWEST], ".2f") or "-"
         sounding += ", ..." if len(found) > LOWEST else ""
-        lines.append(
-            f"{marked:<{names}} {len(vehicle.axle_positions):>5}  {_total(vehicle):>9}"
-            f"  {vehicle.wheelbase:>10.3f}  {sounding:<22} {preset.source}"
-        )
-    return "\n".join(
-        [
-            *lines,
-            "",
-            "length: from first to last axle; frequencies: the lowest on rigid ground, while",
-            "friction holds; none of a train of forces. More of one: spanwise vehicles PRESET",
-            RECALLED,
-        ]
-    )
+        marked = name + ("*" if preset.recalled else "")
+        axles = len(vehicle.axle_positions)
+        rows.append([marked, axles, vehicle._total, vehicle.wheelbase, sounding, preset.source])
+    heads = ["preset", "axles", "total", "length [m]", "frequencies [Hz]", "source"]
+    notes = [
+        "",
+        "length: from first to last axle; frequencies: the lowest on rigid ground, while",
+        "friction holds; none of a train of forces. More of one: spanwise vehicles PRESET",
+        RECALLED,
+    ]
+    return str(Table(heads, rows, ["<", ">", ">", ".3f", "<", "<"], notes))
 
 
 def detail(name: str) -> str:
@@ -81,28 +77,13 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     if preset.options:
         options = (f"{key} = {_value(default)}" for key, default in preset.options.items())
         yield f"options   {', '.join(options)}"
-    yield f"total     {_total(vehicle)}"
+    yield f"total     {vehicle._total}"
     loads = vehicle.static_loads() / 1e3
-    yield f"axles     {_list(loads, '.1f')} kN, {_list(vehicle.axle_spacings, '.3f') or 0} m apart"
-    holding, sliding = (vehicle.frequencies(locked=locked) for locked in (True, False))
-    if len(holding) == 0:
-        return
-    yield f"coords    {', '.join(vehicle.coordinates)}"
-    rubs = not (holding == sliding).all()
-    yield f"on ground {_list(holding, '.3f')} Hz{' while friction holds' if rubs else ''}"
-    if rubs:
-        yield f"          {_list(sliding, '.3f')} Hz sliding"
-
-
-def _total(vehicle: AnyVehicle) -> str:
-    """Mass, or of forces their sum."""
-    if isinstance(vehicle, ForceTrain):
-        return f"{sum(vehicle.loads) / 1e3:.1f} kN"
-    return f"{vehicle.total_mass / 1e3:.2f} t"
-
-
-def _list(values: Iterable[float], form: str) -> str:
-    return ", ".join(format(value, form) for value in values)
+    spacings = listed(vehicle.axle_spacings, ".3f") or 0
+    yield f"axles     {listed(loads, '.1f')} kN, {spacings} m apart"
+    if ground := vehicle._frequencies_in_words:
+        yield f"coords    {', '.join(vehicle.coordinates)}"
+        yield "on ground " + "\n          ".join(ground)
 
 
 def _tables(name: str, values: Iterable[DataclassInstance]) -> Iterator[str]:

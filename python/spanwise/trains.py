@@ -48,6 +48,10 @@ class ForceTrain(Wheels):
     def __repr__(self) -> str:
         return f"ForceTrain({sum(self.loads) / 1e3:.4g} kN, {self._row()})"
 
+    @property
+    def _total(self) -> str:
+        return f"{sum(self.loads) / 1e3:.1f} kN"
+
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class MovingMasses(Wheels):

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
+from spanwise._door import view
 from spanwise._value import Brief
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads import roughness
@@ -65,6 +66,18 @@ class Road(Brief):
     def _doubts(self) -> tuple[str, ...]:
         """What was warned of."""
         return ()
+
+    def __str__(self) -> str:
+        """Kind, places, roughness and contact patch, in words."""
+        patch = getattr(self, "contact_patch", None)
+        return ", ".join(
+            [*self._words(), *([] if patch is None else [f"contact patch {patch:g} m"])]
+        )
+
+    def _words(self) -> list[str]:
+        """What there is to say of it beside the contact patch."""
+        keys = [key for key in ("at", "start", "end") if hasattr(self, key)]
+        return [self.kind, *(f"{key} {getattr(self, key):g} m" for key in keys)]
 
     def _made(self) -> CoreRoad:
         raise TypeError("Road stands for all kinds of roads; make one of them, such as Smooth()")
@@ -337,9 +350,7 @@ class Road(Brief):
     @property
     def plot(self) -> RoadPlot:
         """Figures of the road; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import RoadPlot
-
-        return RoadPlot(self)
+        return view("plotting.RoadPlot")(self)
 
 
 @dataclass(frozen=True, repr=False)
@@ -374,6 +385,9 @@ class Sum(Road):
                 raise ValueError(f"parts[{k}] = {shown(part)}: must be a road")
         self._set(parts=tuple(self.parts))
         return CoreRoad.sum([part._core for part in self.parts])
+
+    def __str__(self) -> str:
+        return " + ".join(map(str, self.parts))
 
     @property
     def arguments(self) -> list[dict[str, Any]]:

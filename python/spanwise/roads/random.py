@@ -91,6 +91,11 @@ class ISO8608(Road):
     seed: int = 0
     sample: int = 0
 
+    def _words(self) -> list[str]:
+        letter = f" class {self.road_class}" if self.road_class else ""
+        sample = f" sample {self.sample}" if self.sample else ""
+        return [f"{self.kind}{letter}", f"G_d(n0) {self.G:.4g} m3", f"seed {self.seed}{sample}"]
+
     def _made(self) -> _core.Road:
         band = numbers("band", self.band)
         if len(band) != 2:

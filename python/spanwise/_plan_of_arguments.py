@@ -1,14 +1,14 @@
-"""The recipe of an ensemble from what a caller gives, checked."""
+"""The plan of an ensemble from what a caller gives, checked."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 from numpy.typing import ArrayLike
 
 from spanwise._checks import count, flag, named, number, shown, whole_from
-from spanwise._conditions import Conditions, Recovery
+from spanwise._conditions import Conditions
 from spanwise._events import (
     Speeds,
     events_of,
@@ -18,22 +18,19 @@ from spanwise._events import (
     speeds_of,
     speeds_told,
 )
-from spanwise._recipe import Quantity, Recipe
+from spanwise._plan import Plan
 from spanwise._variation import factors_of, refuse_overdamped
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
-from spanwise.damping import Damping
+from spanwise.quantities import of_bridges, there_are
 from spanwise.roads import Road
 from spanwise.traffic import Drive, drive_of
 
 #: Most samples: they are numbered in 32 bits.
 MOST_SAMPLES: Final = 2**32 - 1
 
-#: Quantities that a bridge given from outside may come without, as it names them.
-NAMES: Final = {"shear": "shear-left", "reactions": "reaction", "clamp_moments": "clamp-moment"}
 
-
-def recipe_of(
+def plan_of(
     bridge: Bridge,
     vehicle: object,
     *,
@@ -46,23 +43,15 @@ def recipe_of(
     kind: ArrayLike | None,
     factors: Mapping[str, ArrayLike] | None,
     values: Mapping[str, ArrayLike] | None,
-    modes: int | None,
     drive: Drive,
-    damping: Damping | None,
-    approach: float | None,
-    ramp: float | None,
-    tail: float | None,
-    sections: Sequence[float] | None,
-    quantities: Sequence[Quantity] | None,
-    recovery: Recovery,
+    quantities: Sequence[str] | None,
     advance: float | None,
-    step: float | None,
-    beta: float,
-    gravity: float,
-    lift_off: bool,
-    mask: float,
-) -> tuple[Recipe, Speeds]:
-    """What the arguments of `ensemble` come to, and the speeds as they were given."""
+    **conditions: Any,
+) -> tuple[Plan, Speeds]:
+    """What the arguments of `ensemble` come to, and the speeds as they were given.
+
+    Conditions are those arguments that `Conditions.of` takes.
+    """
     if not isinstance(bridge, Bridge):
         raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     events = events_of(vehicle)
@@ -78,24 +67,13 @@ def recipe_of(
     refuse_unused(speeds, events, driven)
     shared, own = own_road(surface, events, own_roads)
     varied = factors_of(factors, values, events, kinds, samples)
-    conditions = Conditions.of(
+    common = Conditions.of(
         bridge,
         uneven=own is not None
         or not all((each.road or shared).is_smooth for event in events for each in event),
-        modes=modes,
-        damping=damping,
-        approach=approach,
-        ramp=ramp,
-        tail=tail,
-        sections=sections,
-        recovery=recovery,
-        step=step,
-        beta=beta,
-        gravity=gravity,
-        lift_off=lift_off,
-        mask=mask,
+        **conditions,
     )
-    refuse_overdamped(varied, conditions.core["damping"], first)
+    refuse_overdamped(varied, common.core["damping"], first)
     looked_at = _quantities(bridge, quantities)
     told = speeds_told(speeds, events, kinds, samples, driven)
     settings: dict[str, Any] = {
@@ -107,15 +85,15 @@ def recipe_of(
         "own_roads": own_roads,
         "kind": kinds if len(events) > 1 else None,
         "factors": {each.name: each.plain for each in varied} or None,
-        "modes": conditions.modes,
+        "modes": common.modes,
         "drive": driven,
-        **conditions.settings,
-        "sections": conditions.core["sections"],
+        **common.settings,
+        "sections": common.core["sections"],
         "quantities": [*looked_at],
         "advance": advance,
-        "step": conditions.core["step"],
+        "step": common.core["step"],
     }
-    recipe = Recipe(
+    plan = Plan(
         bridge=bridge,
         events=events,
         kinds=kinds,
@@ -127,44 +105,35 @@ def recipe_of(
         road=shared,
         own=own,
         factors=varied,
-        conditions=conditions,
+        conditions=common,
         quantities=tuple(looked_at),
         advance=advance,
         settings={key: value for key, value in settings.items() if value is not None},
     )
-    return recipe, speeds
+    return plan, speeds
 
 
-def known(bridge: Bridge) -> list[Quantity]:
-    """What can be looked at: all that the bridge did not come without."""
-    names: tuple[Quantity, ...] = get_args(Quantity)
-    return [name for name in names if NAMES.get(name, name) not in bridge.missing]
-
-
-def all_quantities(bridge: Bridge) -> list[Quantity]:
+def all_quantities(bridge: Bridge) -> list[str]:
     """What there is to look at; without a clamp no moments of clamps."""
-    clamped = len(bridge.clamps) > 0
-    return [name for name in known(bridge) if clamped or name != "clamp_moments"]
+    return [each.name for each in there_are(bridge.missing, clamps=len(bridge.clamps) > 0)]
 
 
-def _quantities(bridge: Bridge, given: object) -> list[Quantity]:
+def _quantities(bridge: Bridge, given: object) -> list[str]:
     """What is looked at, in the order of the responses."""
-    names: tuple[Quantity, ...] = get_args(Quantity)
-    clamped = len(bridge.clamps) > 0
-    there = known(bridge)
+    names = [each.name for each in of_bridges()]
     if given is None:
-        return [name for name in there if clamped or name != "clamp_moments"]
+        return all_quantities(bridge)
     if not isinstance(given, list | tuple) or not given:
         raise ValueError(f"quantities = {shown(given)}: must be a list of {', '.join(names)}")
     wanted = [named(f"quantities[{i}]", each, names) for i, each in enumerate(given)]
+    known = [each.name for each in there_are(bridge.missing, clamps=True)]
+    there = all_quantities(bridge)
     for i, each in enumerate(wanted):
         if each not in there:
-            raise ValueError(
-                f"quantities[{i}] = {shown(each)}: this bridge was given without influence lines "
-                "of it"
+            why = (
+                "no support of this bridge holds the rotation"
+                if each in known
+                else "this bridge was given without influence lines of it"
             )
-        if each == "clamp_moments" and not clamped:
-            raise ValueError(
-                f"quantities[{i}] = {shown(each)}: no support of this bridge holds the rotation"
-            )
+            raise ValueError(f"quantities[{i}] = {shown(each)}: {why}")
     return [name for name in names if name in wanted]
