@@ -304,12 +304,12 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     (lambda: cross(drive="braking"), ('drive = "braking"', "constant-speed or constant-traction")),
     (lambda: cross(drive=3), ("drive = 3", "acceleration, speeds, braking")),
     (lambda: cross(drive={"kind": "brake"}), ("kind = 'brake'", "did you mean 'braking'?")),
-    (lambda: cross(drive={}), ("kind = None", "acceleration, speeds, braking")),
+    (lambda: cross(drive={}), ("drive: missing kind", "acceleration, speeds, braking")),
     (
         lambda: cross(drive={"kind": "braking", "decelerate": 1}),
-        ("drive of kind braking", "'decelerate' (did you mean 'deceleration'?)"),
+        ("drive: unknown key", "'decelerate' (did you mean 'deceleration'?)"),
     ),
-    (lambda: cross(drive={"kind": "braking"}), ("braking", "missing deceleration")),
+    (lambda: cross(drive={"kind": "braking"}), ("drive: missing deceleration",)),
     *(
         (lambda bad=bad: cross(drive=sw.Braking(deceleration=bad)), ("braking deceleration",))
         for bad in (-4.0, 0.0, nan, "4")

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias, get_args
 
-import numpy as np
-
-from spanwise._checks import count, flag, is_list, items, number, numbers, word
+from spanwise._checks import count, flag, number, numbers, word
 from spanwise._value import Value
 from spanwise._warnings import DampingWarning, warn
 from spanwise.bridge import Bridge
-from spanwise.damping import Damping, plain_damping, resolved
+from spanwise.damping import Damping, damping_of, plain_damping, resolved
 
 Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
 
@@ -78,9 +76,8 @@ class Conditions(Value):
         if damping is None:
             warn(UNDAMPED, DampingWarning)
             damping = 0.0
-        if not isinstance(damping, Mapping | np.ndarray) and is_list(damping):
-            damping = items("damping", damping)
-        ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
+        damped = damping_of(damping)
+        ratios, matrix = resolved(damped, lambda: bridge.modes(modes).frequencies)
         beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
         approach, mask = number("approach", approach), masked(mask)
         tail = None if tail is None else number("tail", tail)
@@ -101,7 +98,7 @@ class Conditions(Value):
             "step": None if step is None else number("step", step),
             "sections": None if sections is None else numbers("sections", sections),
         }
-        settings = {"damping": plain_damping(damping), **common, "mask": mask}
+        settings = {"damping": plain_damping(damped), **common, "mask": mask}
         return cls(core, settings, modes, mask)
 
 

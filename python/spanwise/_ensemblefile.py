@@ -6,7 +6,6 @@ import errno
 import json
 import stat
 from collections.abc import Callable, Iterator, Mapping
-from inspect import signature
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 from zipfile import ZIP_STORED, BadZipFile, ZipFile
@@ -15,18 +14,17 @@ import numpy as np
 
 from spanwise import _core
 from spanwise._asked import recipe_of
+from spanwise._build import Maker
 from spanwise._files import write_files
 from spanwise._recipe import Recipe
 from spanwise._rows import Rows
-from spanwise._traffictable import is_alone, passage_of, passage_table
-from spanwise._values import from_plain, plain
-from spanwise._vehicletable import table_of, vehicle_of
-from spanwise.bridge import bridge_of
+from spanwise._values import plain
 from spanwise.damping import in_words
 from spanwise.population import Ensemble
-from spanwise.roads import Road, from_table
+from spanwise.roads import Road
 from spanwise.samples import FACTORS
-from spanwise.traffic import Passage, plain_drive
+from spanwise.schema import Reading, bridge_of, event_table
+from spanwise.traffic import plain_drive
 
 #: Percentiles of the plain values.
 PERCENTILES: Final = (1, 5, 25, 50, 75, 95, 99)
@@ -115,7 +113,7 @@ def _read(archive: Any) -> Ensemble:
     if layout.pop("format") != FORMAT:
         raise ValueError("is of another version of spanwise")
     columns = {key: (int(low), int(high)) for key, (low, high) in layout.pop("columns").items()}
-    recipe = _recipe(from_plain(json.loads(str(archive["settings"]))))
+    recipe = _recipe(json.loads(str(archive["settings"])))
     width = max(high for _, high in columns.values())
     numbers = np.empty((recipe.samples, width))
     axles = (columns["axle_loads"][1] - columns["axle_loads"][0]) // 2
@@ -171,40 +169,30 @@ def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
 
 def _recipe(tables: Mapping[str, Any]) -> Recipe:
     """What `settings` tells, as `ensemble` would understand it."""
-    given = dict(tables["ensemble"])
-    events = [
-        [Passage(vehicle=vehicle_of(each["vehicle"], _nowhere))]
-        if isinstance(each, Mapping)
-        else [passage_of(one, Path(), _nowhere) for one in each]
-        for each in tables["events"]
-    ]
-    given["road"] = from_table(given["road"])
-    optional = dict.fromkeys(signature(recipe_of).parameters)
-    del optional["bridge"], optional["vehicle"]
-    recipe, _ = recipe_of(bridge_of(tables["bridge"]), events, **{**optional, **given})
+    reading = Reading()
+    events = reading.events(tables["events"])
+    asked = Maker(recipe_of, without=("bridge", "vehicle"), needs=("samples",))
+    given: dict[str, Any] = dict.fromkeys(asked.keys)
+    given |= asked.arguments(tables["ensemble"], reading.place("ensemble"))
+    bridge = bridge_of(tables["bridge"], reading.place("bridge"))
+    recipe, _ = recipe_of(bridge, [*map(list, events)], **given)
     return recipe
-
-
-def _nowhere(_: str) -> str:
-    return ""
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:
     """What the ensemble was made of, in plain values, as a case file has it."""
     recipe = ensemble._recipe
-    events = [
-        {"vehicle": table_of(event[0].vehicle)}
-        if is_alone(event)
-        else [passage_table(each) for each in event]
-        for event in recipe.events
-    ]
     given = dict(ensemble.settings)
     road = given["road"]
     assert isinstance(road, Road)
     given["road"] = road.arguments
     given["drive"] = plain_drive(recipe.drive)
     table: dict[str, Any] = plain(
-        {"bridge": recipe.bridge.arguments, "events": events, "ensemble": given}
+        {
+            "bridge": recipe.bridge.arguments,
+            "events": [*map(event_table, recipe.events)],
+            "ensemble": given,
+        }
     )
     return table
 

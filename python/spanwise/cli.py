@@ -18,11 +18,11 @@ from spanwise._files import Content, write_files
 from spanwise._keys import suggestion
 from spanwise._signals import Terminated, terminable
 from spanwise._streams import say, tell
-from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
 from spanwise.report import json_text
 from spanwise.roads import CLASSES, ISO8608, Smooth
+from spanwise.roads.random import is_random, reseeded
 from spanwise.summary import summary
 
 #: Where a case says for an ensemble what options of a single crossing say in its place.

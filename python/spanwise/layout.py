@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
+from spanwise._build import Maker, Place, within
 from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
-from spanwise._keys import suggestion
 from spanwise._value import Hashed
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
@@ -81,9 +81,7 @@ AnySupport: TypeAlias = tuple[float, str] | Sequence[Any] | Support | Mapping[st
 def along(key: str, value: object) -> tuple[list[float] | None, list[float], int]:
     """Breakpoints or None, values, pieces."""
     if isinstance(value, Mapping):
-        keys = ("at", "values", "pieces")
-        _check_keys(key, value, keys, keys[:2], "a number, one for each span,")
-        value = Along(**value)
+        value = _of_table(Along, key, value, "a number, one for each span,")
     if isinstance(value, Along):
         pieces = count(f"{key} pieces", value.pieces)
         return numbers(f"{key} at", value.at), numbers(f"{key} values", value.values), pieces
@@ -99,10 +97,7 @@ def along_argument(given: tuple[list[float] | None, list[float], int]) -> Any:
 def support(key: str, value: object) -> tuple[float, float, float]:
     """Position [m] and springs [N/m, N m/rad] of a support."""
     if isinstance(value, Mapping):
-        keys = ("at", "vertical", "rotation")
-        _check_keys(key, value, keys, keys[:1], "a pair of position and kind")
-        springs = {name: _stiffness(f"{key} {name}", each) for name, each in value.items()}
-        value = Support(**springs)
+        value = _of_table(Support, key, value, "a pair of position and kind")
     if isinstance(value, Support):
         return value.at, value.vertical, value.rotation
     other = "or a Support or table with at, vertical and rotation"
@@ -132,19 +127,9 @@ def _stiffness(key: str, value: object) -> float:
     return math.inf if isinstance(value, str) and value == "inf" else number(key, value)
 
 
-def _check_keys(
-    key: str,
-    table: Mapping[str, Any],
-    allowed: tuple[str, ...],
-    required: tuple[str, ...],
-    otherwise: str,
-) -> None:
-    """Refuse unknown and missing keys; `otherwise` is allowed in place of the table."""
-    wanted = (
-        f"{key} = {shown(dict(table))}: must be {otherwise} or a table with {', '.join(allowed)}"
-    )
-    for each in table:
-        if each not in allowed:
-            raise ValueError(f"{wanted}; unknown key {shown(each)}{suggestion(each, allowed)}")
-    if missing := [each for each in required if each not in table]:
-        raise ValueError(f"{wanted}; missing {', '.join(missing)}")
+def _of_table(kind: type, key: str, table: Mapping[str, Any], otherwise: str) -> Any:
+    """What is made of a table, in place of which something else may be given."""
+    maker = Maker(kind)
+    allowed = f"must be {otherwise} or a table with {', '.join(maker.keys)}"
+    with within(f"{key} = {shown(dict(table))}: {allowed}"):
+        return maker.build(table, Place())

@@ -14,13 +14,13 @@ from spanwise._csv import csv_files
 from spanwise._extras import require
 from spanwise._files import write_files
 from spanwise._keys import alike
-from spanwise._traffictable import is_alone, passage_table
 from spanwise._values import envelope, history, places, plain, quantities, stop
-from spanwise._vehicletable import table_of
 from spanwise.damping import in_words
 from spanwise.responses import QUANTITIES, Quantity
 from spanwise.runs import Run
+from spanwise.schema import passage_table, vehicle_table
 from spanwise.table import COLUMNS
+from spanwise.traffic import is_alone
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -123,7 +123,7 @@ def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
 def _traffic(run: Run) -> dict[str, object]:
     """The tables of the vehicles: one alone, or several."""
     if is_alone(run.passages):
-        return {"vehicle": table_of(run.truck)}
+        return {"vehicle": vehicle_table(run.truck)}
     return {"traffic": [passage_table(each) for each in run.passages]}
 
 

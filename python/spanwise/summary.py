@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from spanwise._freevibration import growth_in_words, tail_in_words
 from spanwise._shown import warned
-from spanwise._traffictable import is_alone
 from spanwise._values import axle_names, stop
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
@@ -19,7 +18,7 @@ from spanwise.responses import Envelope, Extremes, Quantity
 from spanwise.roads import ISO8608, Profile, Road, Sum
 from spanwise.runs import Run
 from spanwise.table import factor_text
-from spanwise.traffic import Passage, plain_drive
+from spanwise.traffic import Passage, is_alone, plain_drive
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
 

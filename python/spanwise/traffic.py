@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Final, Literal, TypeAlias, cast, get_args
 
+from spanwise._build import Maker, Place, build_kind, table_of
 from spanwise._checks import (
-    choice,
     finite,
     items,
     not_negative,
@@ -17,7 +17,6 @@ from spanwise._checks import (
     whole_from,
     word,
 )
-from spanwise._keys import Keys
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
@@ -147,23 +146,16 @@ class Braking:
 Drive: TypeAlias = Plain | Acceleration | Speeds | Braking
 
 #: Drives that need more than a name, by kind.
-KINDS: Final = {each.kind: each for each in (Acceleration, Speeds, Braking)}
+KINDS: Final = {each.kind: (Maker(each),) for each in (Acceleration, Speeds, Braking)}
 
 
-def drive_of(value: object) -> Drive:
+def drive_of(value: object, place: Place = Place("drive")) -> Drive:  # noqa: B008
     """A drive from a word, a drive, or the table of a case file, which says its ``kind``."""
     if isinstance(value, Acceleration | Speeds | Braking):
         return value
     if isinstance(value, Mapping):
-        kind = choice("drive kind", value.get("kind"), KINDS)
-        table = {key: each for key, each in value.items() if key != "kind"}
-        keys = Keys.of(KINDS[kind])
-        try:
-            keys.check_known(table, lambda _: "")
-            keys.check_complete(table)
-        except ValueError as error:
-            raise ValueError(f"drive of kind {kind}: {error}") from None
-        return KINDS[kind](**table)
+        drive: Drive = build_kind(KINDS, value, place)
+        return drive
     try:
         plain = word("drive", value, *get_args(Plain))
         if plain not in get_args(Plain):
@@ -180,10 +172,7 @@ def core_drive(drive: Drive) -> CoreDrive:
 
 def plain_drive(drive: Drive) -> str | dict[str, Any]:
     """As a case file writes it."""
-    if isinstance(drive, str):
-        return drive
-    given = {k: [*v] if isinstance(v, tuple) else v for k, v in asdict(drive).items()}
-    return {"kind": drive.kind, **given}
+    return drive if isinstance(drive, str) else table_of(drive)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -249,6 +238,11 @@ class Passage:
             value = getattr(self, key)
             given += [] if value is None else [f"{key}={value!r}"]
         return f"Passage({', '.join(given)})"
+
+
+def is_alone(passages: Sequence[Passage]) -> bool:
+    """Whether it is one vehicle that does what the crossing says."""
+    return len(passages) == 1 and passages[0] == Passage(vehicle=passages[0].vehicle)
 
 
 def convoy(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from spanwise._build import table_of
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise._value import Brief
@@ -114,14 +115,7 @@ class Road(Brief):
 
         What is None is left out.
         """
-        table: dict[str, Any] = {"kind": self.kind}
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if isinstance(value, np.ndarray):
-                value = value.tolist()
-            if value is not None:
-                table[each.name] = list(value) if isinstance(value, tuple) else value
-        return table
+        return table_of(self)
 
     @property
     def surface(self) -> Road:

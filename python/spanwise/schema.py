@@ -1,0 +1,190 @@
+"""The tables of a case: what may stand in each, what is made of it, and how that is written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+from spanwise._build import Home, Maker, Place, build_one, check_known, table_of
+from spanwise._checks import choice, numbers
+from spanwise.bridge import Bridge
+from spanwise.damping import Rayleigh, damping_of
+from spanwise.roads import Road
+from spanwise.roads.table import KINDS as ROADS
+from spanwise.roads.table import road_of
+from spanwise.traffic import KINDS as DRIVES
+from spanwise.traffic import Braking, Passage, drive_of, is_alone
+from spanwise.trains import ForceTrain, MovingMasses
+from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
+from spanwise.vehicles import PRESETS, AnyVehicle
+
+BRIDGE: Final = Maker(Bridge)
+#: Tables in ``[bridge]`` of a bridge that is given from outside.
+GIVEN: Final = {
+    "from_flexibility": Maker(Bridge.from_flexibility),
+    "from_modes": Maker(Bridge.from_modes),
+}
+PASSAGE: Final = Maker(Passage)
+
+#: Keys that can be given beside the preset of a vehicle of one body.
+CHANGED: Final = ("mass", "pitch_inertia", "cg_height")
+VEHICLES: Final = (
+    Maker(Vehicle, without=("bodies",), needs=("mass", "axles")),
+    Maker(Vehicle, without=("axles", *CHANGED), needs=("bodies",)),
+    Maker(ForceTrain),
+    Maker(MovingMasses),
+)
+
+#: What some presets can be given, and nothing else.
+OPTIONS: Final = {key for preset in PRESETS.values() for key in preset.options} - {*CHANGED}
+
+_VEHICLE: Final = {"preset", *(key for each in VEHICLES for key in each.keys), *OPTIONS}
+
+#: Where keys belong; of those in a vehicle the first counts.
+PLACES: Final[dict[str, Container[str]]] = {
+    "[bridge]": BRIDGE.keys,
+    "[vehicle]": _VEHICLE,
+    "each [[vehicle.axles]]": Maker(Axle).keys,
+    "[vehicle.bodies.hinge]": Maker(Hinge).keys,
+    "each [[vehicle.bodies.springs]]": Maker(Spring).keys,
+    "each [[vehicle.bodies]]": Maker(Body).keys,
+    "each [[traffic]]": ("direction", "entry", "lane"),
+    "[road]": {"kind", *(key for kind in ROADS.values() for each in kind for key in each.keys)},
+    "a drive": {key for kind in DRIVES.values() for each in kind for key in each.keys},
+}
+
+
+def belongs(key: str, places: Mapping[str, Container[str]] = PLACES) -> str:
+    """Where a key belongs that was found in a table without such a key, or nothing."""
+    found: dict[str, str] = {}
+    for place, keys in places.items():
+        if key in keys:
+            found.setdefault(re.split(r"[].]", place)[0].split("[")[-1], place)
+    return f" (belongs in {', '.join(found.values())})" if found else ""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Tables as they are read, with the files that they name.
+
+    Attributes
+    ----------
+    folder : Path
+        Where these are looked for.
+    home : callable
+        Says where a key belongs that is not allowed where it is.
+    files : list of Path
+        Those that have been read.
+    """
+
+    folder: Path = Path()
+    home: Home = belongs
+    files: list[Path] = field(default_factory=list)
+
+    def place(self, table: str) -> Place:
+        """The place of a table of the case."""
+        readers = {Vehicle: vehicle_of, Road: self.road, Rayleigh: _damping, Braking: drive_of}
+        return Place(table=table, home=self.home, readers=readers)
+
+    def road(self, value: Any, place: Place) -> Road:
+        """The road of a table, or the sum of the roads of a list of them."""
+        if isinstance(value, Road):
+            return value
+        several = isinstance(value, list | tuple)
+        return road_of([*map(self._found, value)] if several else self._found(value), place)
+
+    def _found(self, value: Any) -> Any:
+        """The table with the path of its file if it names one."""
+        if isinstance(value, Mapping) and isinstance(value.get("file"), str):
+            self.files.append(self.folder / value["file"])
+            return {**value, "file": str(self.files[-1])}
+        return value
+
+    def events(self, tables: Any) -> list[tuple[Passage, ...]]:
+        """Kinds of event, each a table of a passage or a list of them."""
+        place = self.place("events")
+        if not isinstance(tables, list | tuple) or not tables:
+            raise place["events"].wrong(tables, "tables, [[events]]")
+        return [self.event(each, place[k]) for k, each in enumerate(tables)]
+
+    def event(self, value: Any, place: Place) -> tuple[Passage, ...]:
+        """Who crosses at once: a passage, or a list of them."""
+        if isinstance(value, list | tuple):
+            return tuple(PASSAGE.build(each, place[k]) for k, each in enumerate(value))
+        return (PASSAGE.build(value, place),)
+
+
+def bridge_of(table: Any, place: Place) -> Bridge:
+    """The bridge of a table, described by its spans or given from outside."""
+    name = next((each for each in GIVEN if each in table), None)
+    if name is not None:
+        check_known(table, [name], place)
+        given: Bridge = GIVEN[name].build(table[name], place[name])
+        return given
+    bridge: Bridge = BRIDGE.build(table, place)
+    return bridge
+
+
+def vehicle_of(table: Any, place: Place) -> AnyVehicle:
+    """The vehicle of a table: a preset, bodies and axles, or a train."""
+    if not isinstance(table, Mapping):
+        raise place.wrong(table, f"a table, [{place.written}]")
+    if "preset" in table:
+        return _preset(table, place)
+
+    def home(key: str) -> str:
+        return " (beside some presets only)" if key in OPTIONS else place.home(key)
+
+    vehicle: AnyVehicle = build_one(VEHICLES, table, replace(place, home=home), "preset")
+    return vehicle
+
+
+def _preset(table: Mapping[str, Any], place: Place) -> AnyVehicle:
+    preset = PRESETS[choice(place["preset"].name, table["preset"], PRESETS)]
+    options = {key: table[key] for key in preset.options if key in table}
+    vehicle = preset(**options)
+    allowed = ["preset", *preset.options]
+    if isinstance(vehicle, Vehicle):
+        changed = () if vehicle.bodies else CHANGED
+        allowed += [key for key in (*changed, "initial_friction") if key not in allowed]
+
+    def home(key: str) -> str:
+        return " (not beside this preset)" if key in _VEHICLE else place.home(key)
+
+    check_known(table, allowed, replace(place, home=home))
+    if not isinstance(vehicle, Vehicle):
+        return vehicle
+    changes = {key: table[key] for key in CHANGED if key in table and key not in options}
+    vehicle = replace(vehicle, **changes)
+    if "initial_friction" in table:
+        friction = numbers("initial_friction", table["initial_friction"])
+        vehicle = vehicle.with_initial_friction(*friction)
+    return vehicle
+
+
+def _damping(value: Any, place: Place) -> Any:
+    """As it is given, or of its table."""
+    damping = damping_of(value, place)
+    return damping if isinstance(value, Mapping) else value
+
+
+def vehicle_table(vehicle: AnyVehicle, *, defaults: bool = True) -> dict[str, Any]:
+    """What `vehicle_of` makes this vehicle of; without `defaults` only what differs from them."""
+    table = table_of(vehicle, defaults=defaults)
+    return {"bodies": table["bodies"]} if "bodies" in table else table
+
+
+def passage_table(passage: Passage) -> dict[str, Any]:
+    """The table of a passage."""
+    road = {} if passage.road is None else {"road": passage.road.arguments}
+    return table_of(passage) | {"vehicle": vehicle_table(passage.vehicle)} | road
+
+
+def event_table(passages: Sequence[Passage]) -> Any:
+    """What `Reading.event` makes these passages of."""
+    if is_alone(passages):
+        return {"vehicle": vehicle_table(passages[0].vehicle)}
+    return [passage_table(each) for each in passages]
