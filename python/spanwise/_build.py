@@ -1,38 +1,45 @@
-"""Objects from tables of plain values, and tables from objects, by the type hints of both."""
+"""Objects from tables of plain values, by the type hints of what makes them."""
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import InitVar, dataclass, field, fields, is_dataclass, replace
-from functools import cached_property
+from dataclasses import InitVar, dataclass, field, is_dataclass, replace
+from functools import cache, cached_property
 from inspect import Parameter, signature
 from types import NoneType, UnionType
 from typing import (
-    TYPE_CHECKING,
     Any,
     Final,
+    Generic,
     Literal,
     TypeAlias,
+    TypeVar,
     Union,
     get_args,
     get_origin,
     get_type_hints,
 )
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from spanwise._checks import array, choice, flag, number, numbers, shown, whole
+from spanwise._checks import (
+    array,
+    choice,
+    flag,
+    items,
+    mapping,
+    named,
+    number,
+    numbers,
+    shown,
+    whole,
+)
 from spanwise._keys import suggestion
-from spanwise._value import same
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
+T = TypeVar("T")
 Table: TypeAlias = Mapping[str, Any]
 #: What to say of a key that is not allowed where it is: where it belongs, or nothing.
 Home: TypeAlias = Callable[[str], str]
@@ -90,7 +97,7 @@ def within(place: str, kind: type[ValueError] = ValueError) -> Iterator[None]:
 
 
 @dataclass(frozen=True)
-class Maker:
+class Maker(Generic[T]):
     """What makes something of a table; its arguments are the keys.
 
     Attributes
@@ -107,7 +114,7 @@ class Maker:
         Keys that there must be; without, those of arguments that have no default.
     """
 
-    make: Callable[..., Any]
+    make: Callable[..., T]
     options_of: Callable[..., Any] | None = None
     without: tuple[str, ...] = ()
     called: Mapping[str, str] = field(default_factory=dict)
@@ -154,11 +161,16 @@ class Maker:
             _check(self.keys[key][0], value, place[key])
         return arguments
 
-    def build(self, table: object, place: Place, others: Sequence[str] = ()) -> Any:
+    def build(self, table: object, place: Place, others: Sequence[str] = ()) -> T:
         """What it makes of a table."""
         arguments = self.arguments(table, place, others)
         with within(place.name):
             return self.make(**arguments)
+
+
+@cache
+def _maker(kind: type[Any]) -> Maker[Any]:
+    return Maker(kind)
 
 
 def check_known(table: Mapping[Any, object], allowed: Sequence[str], place: Place) -> None:
@@ -169,7 +181,7 @@ def check_known(table: Mapping[Any, object], allowed: Sequence[str], place: Plac
             raise place.refused(f"unknown key {shown(key)}{hint}; allowed: {', '.join(allowed)}")
 
 
-def build_one(makers: Sequence[Maker], table: object, place: Place, *others: str) -> Any:
+def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: str) -> T:
     """What the first of several makers makes, or the one of which a required key is there."""
     first, *more = makers
     signs = {key: each for each in more for key in each.required if key not in first.keys}
@@ -185,7 +197,12 @@ def build_one(makers: Sequence[Maker], table: object, place: Place, *others: str
     return maker.build(table, place, () if sign else [*others, *signs])
 
 
-def build_kind(kinds: Mapping[str, Sequence[Maker]], table: object, place: Place) -> Any:
+def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:
+    """All keys of tables with a kind."""
+    return {key for makers in kinds.values() for each in makers for key in each.keys}
+
+
+def build_kind(kinds: Mapping[str, Sequence[Maker[T]]], table: object, place: Place) -> T:
     """What those makers make that the ``kind`` of the table is of."""
     if not isinstance(table, Mapping):
         raise place.wrong(table, f"a table with a kind: {', '.join(kinds)}")
@@ -218,7 +235,7 @@ def _built(hint: Any, value: Any, place: Place) -> Any:
     as_it_is = any(get_origin(each) is Mapping for each in types)
     for each in [] if as_it_is else types:
         if isinstance(each, type) and is_dataclass(each):
-            return value if isinstance(value, each) else Maker(each).build(value, place)
+            return value if isinstance(value, each) else _maker(each).build(value, place)
         if get_origin(each) is Sequence and is_dataclass(get_args(each)[0]):
             if not isinstance(value, list | tuple):
                 raise place.wrong(value, f"a list of tables, [[{place.written}]]")
@@ -227,85 +244,28 @@ def _built(hint: Any, value: Any, place: Place) -> Any:
     return math.inf if float in types and isinstance(value, str) and value == "inf" else value
 
 
-def _check(hint: Any, value: Any, place: Place) -> None:
-    """Refuses a value that is not of its type, where that is a plain one."""
-    types = [each for each in _types(hint) if each is not NoneType]
-    if value is None or any(each in place.readers for each in types):
-        return
-    if set(types) >= set(get_args(ArrayLike) or [ArrayLike]):
-        array(place.name, value)
-    elif types == [Sequence[float]]:
-        numbers(place.name, value)
-    elif get_origin(types[0]) is Literal:
-        choice(place.name, value, get_args(types[0]))
-    elif types[0] in _CHECKS:
-        _CHECKS[types[0]](place.name, value)
-
-
 _CHECKS: Final[dict[Any, Callable[[str, object], object]]] = {
     bool: flag,
     int: whole,
     float: number,
+    Sequence[float]: numbers,
 }
 
 
-def table_of(made: DataclassInstance, *, defaults: bool = True) -> dict[str, Any]:
-    """The table that makes the same again: all fields but those that are None or empty.
-
-    Without `defaults` what is as by default is left out too.
-    """
-    kind = getattr(type(made), "kind", None)
-    table: dict[str, Any] = {"kind": kind} if isinstance(kind, str) else {}
-    for each in fields(made):
-        value = getattr(made, each.name)
-        empty = value is None or (isinstance(value, tuple) and not value)
-        if not empty and (defaults or not same(value, each.default)):
-            table[each.name] = _plain(value, defaults)
-    return table
-
-
-def _plain(value: Any, defaults: bool) -> Any:
-    if is_dataclass(value) and not isinstance(value, type):
-        return table_of(value, defaults=defaults)
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [_plain(each, defaults) for each in value] if isinstance(value, list | tuple) else value
-
-
-def toml(tables: Table) -> str:
-    """Tables by name as TOML."""
-    return "\n".join(_lines(tables, ""))[1:]
-
-
-def _lines(table: Table, name: str) -> Iterator[str]:
-    """The values of a table, then the tables in it, each after a blank line and its name."""
-    inner = {key: each for key, each in table.items() if _is_table(each) or _is_tables(each)}
-    yield from (f"{key} = {toml_value(v)}" for key, v in table.items() if key not in inner)
-    for key, each in inner.items():
-        path = f"{name}.{key}" if name else key
-        for one in each if isinstance(each, list) else [each]:
-            if isinstance(each, list):
-                yield from ("", f"[[{path}]]")
-            elif not one or not all(_is_table(v) or _is_tables(v) for v in one.values()):
-                yield from ("", f"[{path}]")
-            yield from _lines(one, path)
-
-
-def _is_table(value: object) -> bool:
-    return isinstance(value, Mapping)
-
-
-def _is_tables(value: object) -> bool:
-    return isinstance(value, list) and len(value) > 0 and all(map(_is_table, value))
-
-
-def toml_value(value: Any) -> str:
-    """A value as TOML, a table on one line."""
-    if isinstance(value, str | bool):
-        return json.dumps(value)
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(map(toml_value, value))}]"
-    if isinstance(value, Mapping):
-        inner = (f"{key} = {toml_value(each)}" for key, each in value.items())
-        return f"{{ {', '.join(inner)} }}"
-    return repr(value)
+def _check(hint: Any, value: Any, place: Place) -> None:
+    """Refuses a value that is not of its type, where that is of plain values."""
+    kind, *others = types = [each for each in _types(hint) if each is not NoneType]
+    if value is None or any(each in place.readers for each in types):
+        return
+    if set(types) >= set(get_args(ArrayLike) or [ArrayLike]):
+        array(place.name, value)
+    elif kind in _CHECKS:
+        _CHECKS[kind](place.name, value)
+    elif get_origin(kind) is Literal and not others:
+        named(place.name, value, get_args(kind))
+    elif get_origin(kind) is Sequence:
+        for k, each in enumerate(items(place.name, value)):
+            _check(get_args(kind)[0], each, place[k])
+    elif get_origin(kind) is Mapping:
+        for key, each in mapping(place.name, value).items():
+            _check(get_args(kind)[1], each, place[key])

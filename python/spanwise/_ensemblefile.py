@@ -170,7 +170,7 @@ def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
 def _recipe(tables: Mapping[str, Any]) -> Recipe:
     """What `settings` tells, as `ensemble` would understand it."""
     reading = Reading()
-    events = reading.events(tables["events"])
+    events = reading.events(tables["events"], reading.place("events"))
     asked = Maker(recipe_of, without=("bridge", "vehicle"), needs=("samples",))
     given: dict[str, Any] = dict.fromkeys(asked.keys)
     given |= asked.arguments(tables["ensemble"], reading.place("ensemble"))

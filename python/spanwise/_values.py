@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from numbers import Integral, Real
 from typing import Any, Final, TypeAlias
@@ -10,14 +9,11 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import named, shown
+from spanwise._checks import named
 from spanwise.responses import QUANTITIES, Quantity
 from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
-
-#: Most tables and lists within each other.
-MAX_DEPTH: Final = 32
 
 EXTREMES: Final = ("max", "min", "static_max", "static_min")
 
@@ -68,21 +64,6 @@ def axle_names(run: Run) -> list[str]:
     if len(run.passages) == 1:
         return [f"axle {axle}" for _, axle in run.axles]
     return [f"vehicle {vehicle} axle {axle}" for vehicle, axle in run.axles]
-
-
-def from_plain(value: Any, name: str = "tables", depth: int = 0) -> Any:
-    """The tables with infinity in place of its name; `name` is that of the value."""
-    if isinstance(value, Mapping | list | tuple) and depth > MAX_DEPTH:
-        raise ValueError(f"{name} = {shown(value)}: has more than {MAX_DEPTH} levels")
-    if isinstance(value, Mapping):
-        before = f"{name}." if depth else ""
-        return {
-            key: from_plain(each, f"{before}{key}" if isinstance(key, str) else name, depth + 1)
-            for key, each in value.items()
-        }
-    if isinstance(value, list | tuple):
-        return [from_plain(each, name, depth + 1) for each in value]
-    return math.inf if isinstance(value, str) and value == "inf" else value
 
 
 def plain(value: object) -> Any:

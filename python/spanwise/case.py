@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
-from spanwise._build import Maker, Table, within
+from spanwise._build import Maker, Place, Table, within
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
@@ -28,6 +28,8 @@ from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
 __all__ = ["Case", "CaseError"]
+
+T = TypeVar("T")
 
 #: A vehicle among several, and what of it, in a message about a crossing.
 VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
@@ -55,10 +57,10 @@ CROSSING: Final = Maker(
     cross, options_of=_for_ensembles, without=("bridge", "vehicle", "road"), needs=()
 )
 SAMPLING: Final = Maker(ensemble, without=("bridge", "vehicle", "threads", "progress"), needs=())
-_PLACES: Final = {
+_PLACES: Final[Mapping[str, Mapping[str, Container[str]]]] = {
     **PLACES,
-    "[crossing]": CROSSING.keys,
-    "[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys() - {"road"},
+    "crossing": {"[crossing]": CROSSING.keys},
+    "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys() - {"road"}},
 }
 
 
@@ -145,10 +147,14 @@ class Case(Hashed):
         if self.road is not None and not isinstance(self.road, Road):
             raise TypeError(f"road = {shown(self.road)}: must be a Road")
         checks_text("source", self.source)
-        for name, table in (("crossing", "crossing"), ("sampling", "ensemble")):
+        for name, table, maker in (
+            ("crossing", "crossing", CROSSING),
+            ("sampling", "ensemble", SAMPLING),
+        ):
             given = mapping(name, getattr(self, name), "a mapping of arguments by name")
-            arguments = _arguments(table, given, Reading(home=_home), self.source)
-            object.__setattr__(self, name, arguments)
+            with within(f"{self.source}, [{table}]", CaseError):
+                given = maker.checked(given, Reading(home=_home).place(table))
+            object.__setattr__(self, name, given)
         events = items("events", self.events, "a list of kinds of event")
         events = [_passages(f"events[{k}]", each) for k, each in enumerate(events)]
         object.__setattr__(self, "events", tuple(events))
@@ -188,12 +194,10 @@ class Case(Hashed):
         path = file_path("path", path)
         reading = Reading(path.parent, _home)
         tables = parse_toml(read_text(path), str(path))
-        with _errors_in(str(path)):
+        with within(str(path), CaseError):
             _check_names(tables)
-        road: Road = Smooth()
-        if "road" in tables:
-            with _errors_in(f"{path}, [road]"):
-                road = reading.road(tables["road"], reading.place("road"))
+        with within(f"{path}, [road]", CaseError):
+            road = reading.road(tables.get("road", Smooth()), reading.place("road"))
         return road, (path, *reading.files)
 
     @classmethod
@@ -239,43 +243,34 @@ class Case(Hashed):
             A ValueError: if a table, key or value is not allowed.
         """
         checks_text("source", source)
-        with _errors_in(source):
+        with within(source, CaseError):
             mapping("tables", tables, "the tables of a case by name")
         return cls._of(tables, source, file_path("folder", folder))
 
     @classmethod
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
         reading = Reading(folder, _home)
-        with _errors_in(source):
+
+        def read(name: str, make: Callable[[Any, Place], T], table: Any, where: str = "") -> T:
+            with within(f"{source}, {where or TABLES[name]}", CaseError):
+                return make(table, reading.place(name))
+
+        with within(source, CaseError):
             _check_tables(tables)
-        with _errors_in(f"{source}, [bridge]"):
-            bridge = bridge_of(tables["bridge"], reading.place("bridge"))
-        road = None
-        if "road" in tables:
-            with _errors_in(f"{source}, [road]"):
-                road = reading.road(tables["road"], reading.place("road"))
-        events: list[tuple[Passage, ...]] = []
-        passages: Sequence[Passage]
+        bridge = read("bridge", bridge_of, tables["bridge"])
+        road = read("road", reading.road, tables["road"]) if "road" in tables else None
         if "events" in tables:
-            with _errors_in(source):
-                events = reading.events(tables["events"])
-            passages = events[0]
+            events = read("events", reading.events, tables["events"])
         elif "vehicle" in tables:
-            with _errors_in(f"{source}, [vehicle]"):
-                vehicle = vehicle_of(tables["vehicle"], reading.place("vehicle"))
-            passages = [Passage(vehicle=vehicle)]
+            events = [(Passage(vehicle=read("vehicle", vehicle_of, tables["vehicle"])),)]
         else:
-            passages = [*_traffic(tables["traffic"], reading, source)]
-        return cls(
-            bridge,
-            tuple(passages),
-            _arguments("crossing", tables.get("crossing", {}), reading, source),
-            road,
-            source,
-            tuple(reading.files),
-            _arguments("ensemble", tables.get("ensemble", {}), reading, source),
-            tuple(events) if len(events) > 1 else (),
-        )
+            each = enumerate(tables["traffic"])
+            events = [tuple(read("traffic", PASSAGE.build, one, _number(k)) for k, one in each)]
+        crossing = read("crossing", CROSSING.checked, tables.get("crossing", {}))
+        sampling = read("ensemble", SAMPLING.checked, tables.get("ensemble", {}))
+        kinds = tuple(events) if len(events) > 1 else ()
+        files = tuple(reading.files)
+        return cls(bridge, events[0], crossing, road, source, files, sampling, kinds)
 
     @property
     def vehicle(self) -> AnyVehicle:
@@ -340,24 +335,6 @@ def _number(vehicle: int) -> str:
     return f"[[traffic]] number {vehicle + 1}"
 
 
-def _errors_in(place: str) -> AbstractContextManager[None]:
-    """Puts the place in front of what a check says."""
-    return within(place, CaseError)
-
-
-def _arguments(table: str, given: Table, reading: Reading, source: str) -> dict[str, Any]:
-    """What ``[crossing]`` or ``[ensemble]`` says, checked, with objects in place of tables."""
-    maker = CROSSING if table == "crossing" else SAMPLING
-    with _errors_in(f"{source}, [{table}]"):
-        return maker.checked(given, reading.place(table))
-
-
-def _traffic(tables: Iterable[object], reading: Reading, source: str) -> Iterator[Passage]:
-    for k, table in enumerate(tables):
-        with _errors_in(f"{source}, {_number(k)}"):
-            yield PASSAGE.build(table, reading.place("traffic"))
-
-
 def _passages(key: str, given: object) -> tuple[Passage, ...]:
     passages = items(key, given, "a list of Passage")
     for i, each in enumerate(passages):
@@ -374,7 +351,7 @@ def _check_tables(tables: Table) -> None:
     how = "ensemble" if "ensemble" in tables else "crossing"
     needed = ("bridge", who[0] if who else "vehicle", how)
     if missing := [name for name in needed if name not in tables]:
-        needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing]"
+        needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing] or [ensemble]"
         raise ValueError(f"missing {_list(missing)}; {needs}")
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from spanwise._build import toml, toml_value
 from spanwise._checks import choice
+from spanwise._toml import toml, toml_value
 from spanwise.schema import vehicle_table
 from spanwise.trains import ForceTrain
 from spanwise.vehicles import PRESETS, AnyVehicle, Preset

@@ -93,7 +93,10 @@ FORMS: Final = "[alpha, beta] or { alpha = ..., beta = ... }"
 Damping: TypeAlias = ArrayLike | Rayleigh | Mapping[str, Any]
 
 
-def damping_of(value: object, place: Place = Place("damping")) -> Rayleigh | list[float] | Array:  # noqa: B008
+DAMPING: Final = Place("damping")
+
+
+def damping_of(value: object, place: Place = DAMPING) -> Rayleigh | list[float] | Array:
     """Damping as `Rayleigh`, a list of ratios, or a matrix C."""
     if isinstance(value, Mapping):
         if [*map(str, value)] != ["rayleigh"]:
@@ -169,5 +172,4 @@ def _rayleigh(value: object, key: str) -> Rayleigh:
     if not isinstance(value, Mapping):
         return Rayleigh(*pair(key, value, f"a pair, {FORMS}"))
     with within(f"{key} = {shown(value)}: must be {FORMS}"):
-        made: Rayleigh = Maker(Rayleigh).build(value, Place())
-    return made
+        return Maker(Rayleigh).build(value, Place())

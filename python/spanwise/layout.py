@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias, TypeVar
 
 from spanwise._build import Maker, Place, within
 from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
 from spanwise._value import Hashed
+
+T = TypeVar("T")
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
 TAPER_PIECES: Final = 32
@@ -127,7 +129,7 @@ def _stiffness(key: str, value: object) -> float:
     return math.inf if isinstance(value, str) and value == "inf" else number(key, value)
 
 
-def _of_table(kind: type, key: str, table: Mapping[str, Any], otherwise: str) -> Any:
+def _of_table(kind: type[T], key: str, table: Mapping[str, Any], otherwise: str) -> T:
     """What is made of a table, in place of which something else may be given."""
     maker = Maker(kind)
     allowed = f"must be {otherwise} or a table with {', '.join(maker.keys)}"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from spanwise._build import Home, Maker, Place, build_one, check_known, table_of
+from spanwise._build import Home, Maker, Place, build_one, check_known, keys_of
 from spanwise._checks import choice, numbers
+from spanwise._toml import table_of
 from spanwise.bridge import Bridge
 from spanwise.damping import Rayleigh, damping_of
 from spanwise.roads import Road
@@ -31,7 +31,7 @@ PASSAGE: Final = Maker(Passage)
 
 #: Keys that can be given beside the preset of a vehicle of one body.
 CHANGED: Final = ("mass", "pitch_inertia", "cg_height")
-VEHICLES: Final = (
+VEHICLES: Final[tuple[Maker[AnyVehicle], ...]] = (
     Maker(Vehicle, without=("bodies",), needs=("mass", "axles")),
     Maker(Vehicle, without=("axles", *CHANGED), needs=("bodies",)),
     Maker(ForceTrain),
@@ -43,27 +43,29 @@ OPTIONS: Final = {key for preset in PRESETS.values() for key in preset.options} 
 
 _VEHICLE: Final = {"preset", *(key for each in VEHICLES for key in each.keys), *OPTIONS}
 
-#: Where keys belong; of those in a vehicle the first counts.
-PLACES: Final[dict[str, Container[str]]] = {
-    "[bridge]": BRIDGE.keys,
-    "[vehicle]": _VEHICLE,
-    "each [[vehicle.axles]]": Maker(Axle).keys,
-    "[vehicle.bodies.hinge]": Maker(Hinge).keys,
-    "each [[vehicle.bodies.springs]]": Maker(Spring).keys,
-    "each [[vehicle.bodies]]": Maker(Body).keys,
-    "each [[traffic]]": ("direction", "entry", "lane"),
-    "[road]": {"kind", *(key for kind in ROADS.values() for each in kind for key in each.keys)},
-    "a drive": {key for kind in DRIVES.values() for each in kind for key in each.keys},
+#: Where keys belong: the places in each table of a case, of which the first with the key counts.
+PLACES: Final[dict[str, dict[str, Container[str]]]] = {
+    "bridge": {"[bridge]": BRIDGE.keys},
+    "vehicle": {
+        "[vehicle]": _VEHICLE,
+        "each [[vehicle.axles]]": Maker(Axle).keys,
+        "[vehicle.bodies.hinge]": Maker(Hinge).keys,
+        "each [[vehicle.bodies.springs]]": Maker(Spring).keys,
+        "each [[vehicle.bodies]]": Maker(Body).keys,
+    },
+    "traffic": {"each [[traffic]]": ("direction", "entry", "lane")},
+    "road": {"[road]": {"kind", *keys_of(ROADS)}},
+    "drive": {"a drive": keys_of(DRIVES)},
 }
 
 
-def belongs(key: str, places: Mapping[str, Container[str]] = PLACES) -> str:
+def belongs(key: str, tables: Mapping[str, Mapping[str, Container[str]]] = PLACES) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
-    found: dict[str, str] = {}
-    for place, keys in places.items():
-        if key in keys:
-            found.setdefault(re.split(r"[].]", place)[0].split("[")[-1], place)
-    return f" (belongs in {', '.join(found.values())})" if found else ""
+    found = [
+        next((place for place, keys in places.items() if key in keys), "")
+        for places in tables.values()
+    ]
+    return f" (belongs in {', '.join(filter(None, found))})" if any(found) else ""
 
 
 @dataclass(frozen=True)
@@ -103,9 +105,8 @@ class Reading:
             return {**value, "file": str(self.files[-1])}
         return value
 
-    def events(self, tables: Any) -> list[tuple[Passage, ...]]:
+    def events(self, tables: Any, place: Place) -> list[tuple[Passage, ...]]:
         """Kinds of event, each a table of a passage or a list of them."""
-        place = self.place("events")
         if not isinstance(tables, list | tuple) or not tables:
             raise place["events"].wrong(tables, "tables, [[events]]")
         return [self.event(each, place[k]) for k, each in enumerate(tables)]
@@ -122,10 +123,8 @@ def bridge_of(table: Any, place: Place) -> Bridge:
     name = next((each for each in GIVEN if each in table), None)
     if name is not None:
         check_known(table, [name], place)
-        given: Bridge = GIVEN[name].build(table[name], place[name])
-        return given
-    bridge: Bridge = BRIDGE.build(table, place)
-    return bridge
+        return GIVEN[name].build(table[name], place[name])
+    return BRIDGE.build(table, place)
 
 
 def vehicle_of(table: Any, place: Place) -> AnyVehicle:
@@ -138,8 +137,7 @@ def vehicle_of(table: Any, place: Place) -> AnyVehicle:
     def home(key: str) -> str:
         return " (beside some presets only)" if key in OPTIONS else place.home(key)
 
-    vehicle: AnyVehicle = build_one(VEHICLES, table, replace(place, home=home), "preset")
-    return vehicle
+    return build_one(VEHICLES, table, replace(place, home=home), "preset")
 
 
 def _preset(table: Mapping[str, Any], place: Place) -> AnyVehicle:

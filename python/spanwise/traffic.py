@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Final, Literal, TypeAlias, cast, get_args
 
-from spanwise._build import Maker, Place, build_kind, table_of
+from spanwise._build import Maker, Place, build_kind
 from spanwise._checks import (
     finite,
     items,
@@ -17,6 +17,7 @@ from spanwise._checks import (
     whole_from,
     word,
 )
+from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
@@ -146,20 +147,24 @@ class Braking:
 Drive: TypeAlias = Plain | Acceleration | Speeds | Braking
 
 #: Drives that need more than a name, by kind.
-KINDS: Final = {each.kind: (Maker(each),) for each in (Acceleration, Speeds, Braking)}
+KINDS: Final[dict[str, tuple[Maker[Acceleration | Speeds | Braking]]]] = {
+    each.kind: (Maker(each),) for each in (Acceleration, Speeds, Braking)
+}
+DRIVE: Final = Place("drive")
 
 
-def drive_of(value: object, place: Place = Place("drive")) -> Drive:  # noqa: B008
+def drive_of(value: object, place: Place = DRIVE) -> Drive:
     """A drive from a word, a drive, or the table of a case file, which says its ``kind``."""
     if isinstance(value, Acceleration | Speeds | Braking):
         return value
     if isinstance(value, Mapping):
-        drive: Drive = build_kind(KINDS, value, place)
-        return drive
+        return build_kind(KINDS, value, place)
     try:
-        plain = word("drive", value, *get_args(Plain))
+        plain = word(place.name, value, *get_args(Plain))
         if plain not in get_args(Plain):
-            raise ValueError(f'drive = "{plain}": must be constant-speed or constant-traction')
+            raise ValueError(
+                f'{place.name} = "{plain}": must be constant-speed or constant-traction'
+            )
     except ValueError as error:
         raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
     return plain  # type: ignore[return-value]

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._build import table_of
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
+from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads import roughness

@@ -22,7 +22,7 @@ def _from_file(file: str, **options: Any) -> Profile:
 _ROUGHNESS: Final = ("road_class", "G")
 
 #: What makes each kind of road.
-KINDS: Final[dict[str, Sequence[Maker]]] = {
+KINDS: Final[dict[str, Sequence[Maker[Road]]]] = {
     ISO8608.kind: (
         Maker(ISO8608, called={"class": "road_class"}),
         Maker(from_iri, options_of=ISO8608, without=_ROUGHNESS),
@@ -69,5 +69,4 @@ def road_of(table: object, place: Place) -> Road:
     """The road of a table, or the sum of the roads of a list of them."""
     if isinstance(table, list | tuple):
         return total([build_kind(KINDS, each, place[k]) for k, each in enumerate(table)])
-    road: Road = build_kind(KINDS, table, place)
-    return road
+    return build_kind(KINDS, table, place)
