@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import InitVar, dataclass, field, is_dataclass, replace
 from functools import cache, cached_property
-from inspect import Parameter, signature
+from inspect import signature
 from types import NoneType, UnionType
 from typing import (
     Any,
@@ -25,57 +25,39 @@ from typing import (
 
 from numpy.typing import ArrayLike
 
-from spanwise._checks import (
-    array,
-    choice,
-    flag,
-    items,
-    mapping,
-    named,
-    number,
-    numbers,
-    shown,
-    whole,
-)
+from spanwise import _checks
+from spanwise._checks import choice, shown
 from spanwise._keys import suggestion
 
 T = TypeVar("T")
 Table: TypeAlias = Mapping[str, Any]
-#: What to say of a key that is not allowed where it is: where it belongs, or nothing.
-Home: TypeAlias = Callable[[str], str]
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where in a file a value stands, and what is known there.
+    """Where in a file a value stands, and how what stands there is read.
 
     Attributes
     ----------
     name : str
         What messages call it, such as ``bodies[0].axles[1]``; nothing if it is the whole table.
     table : str
-        The table of the file that the name begins in.
+        The table that the name begins in.
     home : callable
-        Says where a key belongs that is not allowed.
+        Says where a key belongs that is not allowed here, or nothing.
     readers : mapping
         What reads a value whose hint has one of these classes.
     """
 
     name: str = ""
     table: str = ""
-    home: Home = lambda key: ""
+    home: Callable[[str], str] = lambda key: ""
     readers: Mapping[type, Callable[[Any, Place], object]] = field(default_factory=dict)
 
     def __getitem__(self, key: object) -> Place:
-        """The place of a value in a table or of an item of a list."""
         if isinstance(key, int):
             return replace(self, name=f"{self.name or self.table}[{key}]")
         return replace(self, name=f"{self.name}.{key}" if self.name else str(key))
-
-    @property
-    def written(self) -> str:
-        """The table as a file has it, without numbers."""
-        return re.sub(r"\[\d+\]", "", ".".join(filter(None, (self.table, self.name))))
 
     def refused(self, said: str) -> ValueError:
         """The error that says so of the table that stands here."""
@@ -83,8 +65,12 @@ class Place:
 
     def wrong(self, value: object, allowed: str) -> ValueError:
         """The error that says what the value that stands here must be."""
-        name = f"{self.name} = " if self.name else ""
-        return ValueError(f"{name}{shown(value)}: must be {allowed}")
+        return ValueError(f"{self.name}{' = ' * bool(self.name)}{shown(value)}: must be {allowed}")
+
+    def no_table(self, value: object, form: str = "a table, [{}]") -> ValueError:
+        """The error that says how the table that is to stand here is written."""
+        written = ".".join(filter(None, (self.table, self.name)))
+        return self.wrong(value, form.format(re.sub(r"\[\d+\]", "", written)))
 
 
 @contextmanager
@@ -98,7 +84,7 @@ def within(place: str, kind: type[ValueError] = ValueError) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Maker(Generic[T]):
-    """What makes something of a table; its arguments are the keys.
+    """What makes something of a table, the keys of which are its arguments.
 
     Attributes
     ----------
@@ -110,8 +96,8 @@ class Maker(Generic[T]):
         Arguments that are no keys.
     called : mapping
         Arguments by the keys that are called otherwise.
-    needs : tuple of str
-        Keys that there must be; without, those of arguments that have no default.
+    needs : tuple of str, optional
+        Keys that there must be; by default those of arguments without a default.
     """
 
     make: Callable[..., T]
@@ -121,36 +107,32 @@ class Maker(Generic[T]):
     needs: tuple[str, ...] | None = None
 
     @cached_property
-    def keys(self) -> dict[str, tuple[Any, bool]]:
-        """Type and whether it is required, of every key."""
+    def keys(self) -> dict[str, Any]:
+        """Type hints by key."""
         names = {argument: key for key, argument in self.called.items()}
-        found: dict[str, tuple[Any, bool]] = {}
-        for each in filter(None, (self.make, self.options_of)):
-            target: Any = each
-            hints = get_type_hints(target.__init__ if isinstance(each, type) else target)
-            for name, one in signature(each).parameters.items():
-                if one.kind is not Parameter.VAR_KEYWORD and name not in self.without:
-                    required = one.default is Parameter.empty
-                    found.setdefault(names.get(name, name), (hints.get(name, Any), required))
-        return found
+        hints = _signature(self.make)[0]
+        if self.options_of is not None:
+            options = _signature(self.options_of)[0]
+            hints = hints | {key: each for key, each in options.items() if key not in hints}
+        return {names.get(k, k): hint for k, hint in hints.items() if k not in self.without}
 
     @property
-    def required(self) -> list[str]:
+    def required(self) -> Sequence[str]:
         """Keys that there must be."""
         if self.needs is not None:
-            return [*self.needs]
-        return [key for key, (_, required) in self.keys.items() if required]
+            return self.needs
+        return [key for key in _signature(self.make)[1] if key not in self.without]
 
     def arguments(self, table: object, place: Place, others: Sequence[str] = ()) -> dict[str, Any]:
         """What it is called with, objects in place of tables; `others` are keys of other makers."""
         if not isinstance(table, Mapping):
-            raise place.wrong(table, f"a table, [{place.written}]")
+            raise place.no_table(table)
         check_known(table, [*self.keys, *others], place)
         if missing := [key for key in self.required if key not in table]:
             instead = f"; or give {', '.join(others)}" if others else ""
             raise place.refused(f"missing {', '.join(missing)}{instead}")
         return {
-            self.called.get(key, key): _built(self.keys[key][0], value, place[key])
+            self.called.get(key, key): _built(self.keys[key], value, place[key])
             for key, value in table.items()
         }
 
@@ -158,7 +140,7 @@ class Maker(Generic[T]):
         """The same for what is not called at once: plain values too are of the types of hints."""
         arguments = self.arguments(table, place)
         for key, value in arguments.items():
-            _check(self.keys[key][0], value, place[key])
+            _check(self.keys[key], value, place[key])
         return arguments
 
     def build(self, table: object, place: Place, others: Sequence[str] = ()) -> T:
@@ -169,8 +151,13 @@ class Maker(Generic[T]):
 
 
 @cache
-def _maker(kind: type[Any]) -> Maker[Any]:
-    return Maker(kind)
+def _signature(function: Callable[..., Any]) -> tuple[dict[str, Any], list[str]]:
+    """Type hints of the named arguments of a function or class, and those without a default."""
+    target: Any = function
+    hints = get_type_hints(target.__init__ if isinstance(function, type) else target)
+    found = [p for p in signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
+    required = [each.name for each in found if each.default is each.empty]
+    return {each.name: hints[each.name] for each in found}, required
 
 
 def check_known(table: Mapping[Any, object], allowed: Sequence[str], place: Place) -> None:
@@ -197,11 +184,6 @@ def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: 
     return maker.build(table, place, () if sign else [*others, *signs])
 
 
-def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:
-    """All keys of tables with a kind."""
-    return {key for makers in kinds.values() for each in makers for key in each.keys}
-
-
 def build_kind(kinds: Mapping[str, Sequence[Maker[T]]], table: object, place: Place) -> T:
     """What those makers make that the ``kind`` of the table is of."""
     if not isinstance(table, Mapping):
@@ -211,12 +193,16 @@ def build_kind(kinds: Mapping[str, Sequence[Maker[T]]], table: object, place: Pl
     kind = choice(place["kind"].name, table["kind"], kinds)
 
     def beside(key: str) -> str:
-        found = [each for each, makers in kinds.items() if any(key in one.keys for one in makers)]
-        other = f" (not beside kind = {kind!r}, but {' and '.join(found)})" if found else ""
-        return other or place.home(key)
+        found = " and ".join(each for each in kinds if key in keys_of({each: kinds[each]}))
+        return f" (not beside kind = {kind!r}, but {found})" if found else place.home(key)
 
     rest = {key: value for key, value in table.items() if key != "kind"}
     return build_one(kinds[kind], rest, replace(place, home=beside))
+
+
+def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:
+    """All keys of tables with a kind."""
+    return {key for makers in kinds.values() for each in makers for key in each.keys}
 
 
 def _types(hint: Any) -> list[Any]:
@@ -230,25 +216,23 @@ def _built(hint: Any, value: Any, place: Place) -> Any:
     types = _types(hint)
     if value is None and NoneType in types:
         return None
-    if reader := next((place.readers[each] for each in types if each in place.readers), None):
-        return reader(value, place)
-    as_it_is = any(get_origin(each) is Mapping for each in types)
-    for each in [] if as_it_is else types:
+    for each in types:
+        if each in place.readers:
+            return place.readers[each](value, place)
+    for each in [] if Mapping in {get_origin(each) for each in types} else types:
         if isinstance(each, type) and is_dataclass(each):
-            return value if isinstance(value, each) else _maker(each).build(value, place)
+            return value if isinstance(value, each) else Maker(each).build(value, place)
         if get_origin(each) is Sequence and is_dataclass(get_args(each)[0]):
             if not isinstance(value, list | tuple):
-                raise place.wrong(value, f"a list of tables, [[{place.written}]]")
+                raise place.no_table(value, "a list of tables, [[{}]]")
             return [_built(get_args(each)[0], one, place[k]) for k, one in enumerate(value)]
     # JSON has no infinity.
     return math.inf if float in types and isinstance(value, str) and value == "inf" else value
 
 
 _CHECKS: Final[dict[Any, Callable[[str, object], object]]] = {
-    bool: flag,
-    int: whole,
-    float: number,
-    Sequence[float]: numbers,
+    **{bool: _checks.flag, int: _checks.whole, float: _checks.number},
+    Sequence[float]: _checks.numbers,
 }
 
 
@@ -258,14 +242,14 @@ def _check(hint: Any, value: Any, place: Place) -> None:
     if value is None or any(each in place.readers for each in types):
         return
     if set(types) >= set(get_args(ArrayLike) or [ArrayLike]):
-        array(place.name, value)
+        _checks.array(place.name, value)
     elif kind in _CHECKS:
         _CHECKS[kind](place.name, value)
     elif get_origin(kind) is Literal and not others:
-        named(place.name, value, get_args(kind))
+        _checks.named(place.name, value, get_args(kind))
     elif get_origin(kind) is Sequence:
-        for k, each in enumerate(items(place.name, value)):
+        for k, each in enumerate(_checks.items(place.name, value)):
             _check(get_args(kind)[0], each, place[k])
     elif get_origin(kind) is Mapping:
-        for key, each in mapping(place.name, value).items():
+        for key, each in _checks.mapping(place.name, value).items():
             _check(get_args(kind)[1], each, place[key])

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from spanwise._build import Home, Maker, Place, build_one, check_known, keys_of
+from spanwise._build import Maker, Place, build_one, check_known, keys_of
 from spanwise._checks import choice, numbers
 from spanwise._toml import table_of
 from spanwise.bridge import Bridge
@@ -83,7 +83,7 @@ class Reading:
     """
 
     folder: Path = Path()
-    home: Home = belongs
+    home: Callable[[str], str] = belongs
     files: list[Path] = field(default_factory=list)
 
     def place(self, table: str) -> Place:
@@ -130,7 +130,7 @@ def bridge_of(table: Any, place: Place) -> Bridge:
 def vehicle_of(table: Any, place: Place) -> AnyVehicle:
     """The vehicle of a table: a preset, bodies and axles, or a train."""
     if not isinstance(table, Mapping):
-        raise place.wrong(table, f"a table, [{place.written}]")
+        raise place.no_table(table)
     if "preset" in table:
         return _preset(table, place)
 
