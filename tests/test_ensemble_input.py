@@ -160,7 +160,7 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
     (TRUCK, {"modes": 0}, ValueError, "modes = 0"),
     (TRUCK, {"ramp": 5.0}, ValueError, "ramp = 5 m: must not be longer than the approach"),
     (TRUCK, {"sections": [30.0]}, ValueError, "sections[0] = 30 m: must lie on the beam"),
-    (TRUCK, {"drive": "fly"}, ValueError, 'drive = "fly": must be constant-speed'),
+    (TRUCK, {"drive": "fly"}, ValueError, "drive = 'fly': must be constant-speed"),
     (
         TRUCK,
         {"drive": sw.Speeds(times=[0, 1], speeds=[5, 9])},

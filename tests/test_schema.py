@@ -192,7 +192,7 @@ REFUSED = [
         "[crossing]\nrecovery = 'forces'",
         r"^case, \[crossing\]: recovery = 'forces': must be one of force-summation, ",
     ),
-    ("[crossing]\ndrive = 'slow'", r'^case, \[crossing\]: drive = "slow": must be constant-speed'),
+    ("[crossing]\ndrive = 'slow'", r"^case, \[crossing\]: drive = 'slow': must be constant-speed"),
     (
         "[crossing]\ndrive = { kind = 'braking' }",
         r"^case, \[crossing\]: drive: missing deceleration$",

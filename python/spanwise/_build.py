@@ -160,12 +160,19 @@ def _signature(function: Callable[..., Any]) -> tuple[dict[str, Any], list[str]]
     return {each.name: hints[each.name] for each in found}, required
 
 
-def check_known(table: Mapping[Any, object], allowed: Sequence[str], place: Place) -> None:
+def check_known(
+    table: Mapping[Any, object],
+    known: Sequence[str],
+    place: Place,
+    what: str = "key",
+    written: Sequence[str] = (),
+) -> None:
     """Refuses unknown keys, with the table where they belong or else the nearest known key."""
     for key in table:
-        if key not in allowed:
-            hint = (place.home(key) if isinstance(key, str) else "") or suggestion(key, allowed)
-            raise place.refused(f"unknown key {shown(key)}{hint}; allowed: {', '.join(allowed)}")
+        if key not in known:
+            hint = (place.home(key) if isinstance(key, str) else "") or suggestion(key, known)
+            allowed = ", ".join(written or known)
+            raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {allowed}")
 
 
 def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: str) -> T:

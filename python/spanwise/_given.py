@@ -8,8 +8,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._build import Place, check_known
 from spanwise._checks import array, shown
-from spanwise._keys import suggestion
 from spanwise._warnings import PlausibilityWarning, warn
 
 Array: TypeAlias = NDArray[np.float64]
@@ -144,10 +144,5 @@ def _table(key: str, value: object) -> Mapping[str, Any]:
         return {}
     if not isinstance(value, Mapping):
         raise ValueError(f"{key} = {shown(value)}: must name its responses: {{'moment': ...}}")
-    for name in value:
-        if name not in QUANTITIES:
-            hint = suggestion(name, QUANTITIES)
-            raise ValueError(
-                f"{key}: unknown response {shown(name)}{hint}; allowed: {', '.join(QUANTITIES)}"
-            )
+    check_known(value, QUANTITIES, Place(key), "response")
     return value

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from spanwise._build import Maker, Place, Table, within
+from spanwise._build import Maker, Place, Table, check_known, within
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
-from spanwise._keys import suggestion
 from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
@@ -44,8 +43,6 @@ TABLES: Final = {
     "ensemble": "[ensemble]",
     "events": "[[events]]",
 }
-#: Those that say who crosses, one of which there is.
-WHO: Final = ("vehicle", "traffic", "events")
 
 
 def _for_ensembles(*, advance: float | None = None) -> None:
@@ -195,7 +192,7 @@ class Case(Hashed):
         reading = Reading(path.parent, _home)
         tables = parse_toml(read_text(path), str(path))
         with within(str(path), CaseError):
-            _check_names(tables)
+            _check_tables(tables)
         with within(f"{path}, [road]", CaseError):
             road = reading.road(tables.get("road", Smooth()), reading.place("road"))
         return road, (path, *reading.files)
@@ -251,21 +248,24 @@ class Case(Hashed):
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
         reading = Reading(folder, _home)
 
-        def read(name: str, make: Callable[[Any, Place], T], table: Any, where: str = "") -> T:
+        def read(name: str, make: Callable[[Any, Place], T], *table: Any, where: str = "") -> T:
             with within(f"{source}, {where or TABLES[name]}", CaseError):
-                return make(table, reading.place(name))
+                return make(table[0] if table else tables[name], reading.place(name))
 
         with within(source, CaseError):
             _check_tables(tables)
-        bridge = read("bridge", bridge_of, tables["bridge"])
-        road = read("road", reading.road, tables["road"]) if "road" in tables else None
+            _check_complete(tables)
+        bridge = read("bridge", bridge_of)
+        road = read("road", reading.road) if "road" in tables else None
         if "events" in tables:
-            events = read("events", reading.events, tables["events"])
+            events = read("events", reading.events)
         elif "vehicle" in tables:
-            events = [(Passage(vehicle=read("vehicle", vehicle_of, tables["vehicle"])),)]
+            events = [(Passage(vehicle=read("vehicle", vehicle_of)),)]
         else:
             each = enumerate(tables["traffic"])
-            events = [tuple(read("traffic", PASSAGE.build, one, _number(k)) for k, one in each)]
+            events = [
+                tuple(read("traffic", PASSAGE.build, one, where=_number(k)) for k, one in each)
+            ]
         crossing = read("crossing", CROSSING.checked, tables.get("crossing", {}))
         sampling = read("ensemble", SAMPLING.checked, tables.get("ensemble", {}))
         kinds = tuple(events) if len(events) > 1 else ()
@@ -343,23 +343,20 @@ def _passages(key: str, given: object) -> tuple[Passage, ...]:
     return tuple(passages)
 
 
-def _check_tables(tables: Table) -> None:
-    _check_names(tables)
-    who = [name for name in WHO if name in tables]
+def _check_complete(tables: Table) -> None:
+    who = [name for name in ("vehicle", "traffic", "events") if name in tables]
     if len(who) > 1:
         raise ValueError(f"{TABLES[who[0]]} and {TABLES[who[1]]}: give one of the two")
     how = "ensemble" if "ensemble" in tables else "crossing"
-    needed = ("bridge", who[0] if who else "vehicle", how)
-    if missing := [name for name in needed if name not in tables]:
+    missing = [name for name in ("bridge", *(who or ["vehicle"]), how) if name not in tables]
+    if missing:
         needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing] or [ensemble]"
-        raise ValueError(f"missing {_list(missing)}; {needs}")
+        raise ValueError(f"missing {', '.join(TABLES[name] for name in missing)}; {needs}")
 
 
-def _check_names(tables: Mapping[Any, Any]) -> None:
+def _check_tables(tables: Table) -> None:
+    check_known(tables, [*TABLES], Place(home=_home), "table or key", [*TABLES.values()])
     for name, table in tables.items():
-        if name not in TABLES:
-            hint = (_home(name) if isinstance(name, str) else "") or suggestion(name, TABLES)
-            raise ValueError(f"unknown table or key {shown(name)}{hint}; allowed: {_list(TABLES)}")
         several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
         if name == "traffic" and not several:
             raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
@@ -373,7 +370,3 @@ def _home(key: str) -> str:
     if key in TABLES and key != "vehicle":
         return f" (a table of its own, {TABLES[key]})"
     return belongs(key, _PLACES)
-
-
-def _list(tables: Iterable[str]) -> str:
-    return ", ".join(TABLES[name] for name in tables)

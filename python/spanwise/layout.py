@@ -96,22 +96,23 @@ def along_argument(given: tuple[list[float] | None, list[float], int]) -> Any:
     return values if at is None else {"at": at, "values": values, "pieces": pieces}
 
 
-def support(key: str, value: object) -> tuple[float, float, float]:
-    """Position [m] and springs [N/m, N m/rad] of a support."""
+def support(key: str, value: object) -> Support:
+    """A support, of what is accepted for one."""
     if isinstance(value, Mapping):
-        value = _of_table(Support, key, value, "a pair of position and kind")
+        return _of_table(Support, key, value, "a pair of position and kind")
     if isinstance(value, Support):
-        return value.at, value.vertical, value.rotation
+        return value
     other = "or a Support or table with at, vertical and rotation"
     at, kind = pair(key, value, f"a pair of position and kind, {other}")
     kinds = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
     if not isinstance(kind, str) or kind not in kinds:
         raise ValueError(f"{key} = {shown(kind)}: must be pinned or clamped")
-    return number(f"{key} position", at), *kinds[kind]
+    vertical, rotation = kinds[kind]
+    return Support(at=number(f"{key} position", at), vertical=vertical, rotation=rotation)
 
 
-def supports(key: str, value: object) -> list[tuple[float, float, float]]:
-    """Positions [m] and springs [N/m, N m/rad] of the supports."""
+def supports(key: str, value: object) -> list[Support]:
+    """The supports, of what is accepted for them."""
     given = items(key, value, "a list of supports")
     return [support(f"{key}[{i}]", each) for i, each in enumerate(given)]
 

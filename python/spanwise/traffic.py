@@ -159,15 +159,11 @@ def drive_of(value: object, place: Place = DRIVE) -> Drive:
         return value
     if isinstance(value, Mapping):
         return build_kind(KINDS, value, place)
-    try:
-        plain = word(place.name, value, *get_args(Plain))
-        if plain not in get_args(Plain):
-            raise ValueError(
-                f'{place.name} = "{plain}": must be constant-speed or constant-traction'
-            )
-    except ValueError as error:
-        raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
-    return plain  # type: ignore[return-value]
+    steady = get_args(Plain)
+    if not isinstance(value, str) or value not in steady:
+        allowed = f"{' or '.join(steady)}; or a drive of its own: {', '.join(KINDS)}"
+        raise place.wrong(value, allowed)
+    return cast("Plain", value)
 
 
 def core_drive(drive: Drive) -> CoreDrive:
