@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import InitVar, dataclass, field, is_dataclass, replace
 from functools import cache, cached_property
-from inspect import signature
+from inspect import Parameter, signature
 from types import NoneType, UnionType
 from typing import (
     Any,
@@ -20,7 +20,6 @@ from typing import (
     Union,
     get_args,
     get_origin,
-    get_type_hints,
 )
 
 from numpy.typing import ArrayLike
@@ -35,23 +34,15 @@ Table: TypeAlias = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Place:
-    """Where in a file a value stands, and how what stands there is read.
+    """Where in a file a value stands, and how what stands there is read."""
 
-    Attributes
-    ----------
-    name : str
-        What messages call it, such as ``bodies[0].axles[1]``; nothing if it is the whole table.
-    table : str
-        The table that the name begins in.
-    home : callable
-        Says where a key belongs that is not allowed here, or nothing.
-    readers : mapping
-        What reads a value whose hint has one of these classes.
-    """
-
+    #: What messages call it, such as ``bodies[0].axles[1]``; nothing if it is the whole table.
     name: str = ""
+    #: The table that the name begins in.
     table: str = ""
+    #: Says where a key belongs that is not allowed here, or nothing.
     home: Callable[[str], str] = lambda key: ""
+    #: What reads a value whose hint has one of these classes.
     readers: Mapping[type, Callable[[Any, Place], object]] = field(default_factory=dict)
 
     def __getitem__(self, key: object) -> Place:
@@ -64,13 +55,10 @@ class Place:
         return ValueError(f"{self.name}: {said}" if self.name else said)
 
     def wrong(self, value: object, allowed: str) -> ValueError:
-        """The error that says what the value that stands here must be."""
-        return ValueError(f"{self.name}{' = ' * bool(self.name)}{shown(value)}: must be {allowed}")
-
-    def no_table(self, value: object, form: str = "a table, [{}]") -> ValueError:
-        """The error that says how the table that is to stand here is written."""
-        written = ".".join(filter(None, (self.table, self.name)))
-        return self.wrong(value, form.format(re.sub(r"\[\d+\]", "", written)))
+        """The error that says what the value here must be; ``[]`` is how a table is written."""
+        written = re.sub(r"\[\d+\]", "", ".".join(filter(None, (self.table, self.name))))
+        name = f"{self.name} = " if self.name else ""
+        return ValueError(f"{name}{shown(value)}: must be {allowed.replace('[]', f'[{written}]')}")
 
 
 @contextmanager
@@ -82,57 +70,56 @@ def within(place: str, kind: type[ValueError] = ValueError) -> Iterator[None]:
         raise kind(f"{place}: {error}" if place else str(error)) from error
 
 
+def check_known(
+    table: Mapping[Any, object], known: Sequence[str], place: Place, what: str = "key"
+) -> None:
+    """Refuses unknown keys, with the table where they belong or else the nearest known key."""
+    for key in table:
+        if key not in known:
+            hint = (place.home(key) if isinstance(key, str) else "") or suggestion(key, known)
+            raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {', '.join(known)}")
+
+
 @dataclass(frozen=True)
 class Maker(Generic[T]):
-    """What makes something of a table, the keys of which are its arguments.
+    """What makes something of a table, the keys of which are its arguments."""
 
-    Attributes
-    ----------
-    make : callable
-        A class or a function.
-    options_of : callable, optional
-        Where the arguments go that `make` passes on.
-    without : tuple of str
-        Arguments that are no keys.
-    called : mapping
-        Arguments by the keys that are called otherwise.
-    needs : tuple of str, optional
-        Keys that there must be; by default those of arguments without a default.
-    """
-
+    #: A class or a function.
     make: Callable[..., T]
+    #: Where the arguments go that it passes on.
     options_of: Callable[..., Any] | None = None
+    #: Arguments that are no keys.
     without: tuple[str, ...] = ()
+    #: Arguments by the keys that are called otherwise.
     called: Mapping[str, str] = field(default_factory=dict)
+    #: Keys that there must be; by default those of arguments without a default.
     needs: tuple[str, ...] | None = None
 
     @cached_property
-    def keys(self) -> dict[str, Any]:
-        """Type hints by key."""
+    def keys(self) -> dict[str, Parameter]:
+        """Arguments by key."""
         names = {argument: key for key, argument in self.called.items()}
-        hints = _signature(self.make)[0]
-        if self.options_of is not None:
-            options = _signature(self.options_of)[0]
-            hints = hints | {key: each for key, each in options.items() if key not in hints}
-        return {names.get(k, k): hint for k, hint in hints.items() if k not in self.without}
+        callables = filter(None, (self.make, self.options_of))
+        found = [p for c in callables for p in signature(c, eval_str=True).parameters.values()]
+        named = [p for p in found if p.kind is not p.VAR_KEYWORD and p.name not in self.without]
+        return {names.get(each.name, each.name): each for each in named}
 
     @property
     def required(self) -> Sequence[str]:
         """Keys that there must be."""
-        if self.needs is not None:
-            return self.needs
-        return [key for key in _signature(self.make)[1] if key not in self.without]
+        without_default = [key for key, each in self.keys.items() if each.default is each.empty]
+        return without_default if self.needs is None else self.needs
 
     def arguments(self, table: object, place: Place, others: Sequence[str] = ()) -> dict[str, Any]:
         """What it is called with, objects in place of tables; `others` are keys of other makers."""
         if not isinstance(table, Mapping):
-            raise place.no_table(table)
+            raise place.wrong(table, "a table, []")
         check_known(table, [*self.keys, *others], place)
         if missing := [key for key in self.required if key not in table]:
             instead = f"; or give {', '.join(others)}" if others else ""
             raise place.refused(f"missing {', '.join(missing)}{instead}")
         return {
-            self.called.get(key, key): _built(self.keys[key], value, place[key])
+            self.keys[key].name: _built(self.keys[key].annotation, value, place[key])
             for key, value in table.items()
         }
 
@@ -140,7 +127,7 @@ class Maker(Generic[T]):
         """The same for what is not called at once: plain values too are of the types of hints."""
         arguments = self.arguments(table, place)
         for key, value in arguments.items():
-            _check(self.keys[key], value, place[key])
+            _check(self.keys[key].annotation, value, place[key])
         return arguments
 
     def build(self, table: object, place: Place, others: Sequence[str] = ()) -> T:
@@ -148,31 +135,6 @@ class Maker(Generic[T]):
         arguments = self.arguments(table, place, others)
         with within(place.name):
             return self.make(**arguments)
-
-
-@cache
-def _signature(function: Callable[..., Any]) -> tuple[dict[str, Any], list[str]]:
-    """Type hints of the named arguments of a function or class, and those without a default."""
-    target: Any = function
-    hints = get_type_hints(target.__init__ if isinstance(function, type) else target)
-    found = [p for p in signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
-    required = [each.name for each in found if each.default is each.empty]
-    return {each.name: hints[each.name] for each in found}, required
-
-
-def check_known(
-    table: Mapping[Any, object],
-    known: Sequence[str],
-    place: Place,
-    what: str = "key",
-    written: Sequence[str] = (),
-) -> None:
-    """Refuses unknown keys, with the table where they belong or else the nearest known key."""
-    for key in table:
-        if key not in known:
-            hint = (place.home(key) if isinstance(key, str) else "") or suggestion(key, known)
-            allowed = ", ".join(written or known)
-            raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {allowed}")
 
 
 def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: str) -> T:
@@ -212,6 +174,9 @@ def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:
     return {key for makers in kinds.values() for each in makers for key in each.keys}
 
 
+_maker: Final = cache(Maker)
+
+
 def _types(hint: Any) -> list[Any]:
     """The types of a union, or the one there is."""
     hint = hint.type if isinstance(hint, InitVar) else hint
@@ -228,10 +193,10 @@ def _built(hint: Any, value: Any, place: Place) -> Any:
             return place.readers[each](value, place)
     for each in [] if Mapping in {get_origin(each) for each in types} else types:
         if isinstance(each, type) and is_dataclass(each):
-            return value if isinstance(value, each) else Maker(each).build(value, place)
+            return value if isinstance(value, each) else _maker(each).build(value, place)
         if get_origin(each) is Sequence and is_dataclass(get_args(each)[0]):
             if not isinstance(value, list | tuple):
-                raise place.no_table(value, "a list of tables, [[{}]]")
+                raise place.wrong(value, "a list of tables, [[]]")
             return [_built(get_args(each)[0], one, place[k]) for k, one in enumerate(value)]
     # JSON has no infinity.
     return math.inf if float in types and isinstance(value, str) and value == "inf" else value

@@ -355,7 +355,7 @@ def _check_complete(tables: Table) -> None:
 
 
 def _check_tables(tables: Table) -> None:
-    check_known(tables, [*TABLES], Place(home=_home), "table or key", [*TABLES.values()])
+    check_known(tables, [*TABLES], Place(home=_home), "table or key")
     for name, table in tables.items():
         several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
         if name == "traffic" and not several:

@@ -130,7 +130,7 @@ def bridge_of(table: Any, place: Place) -> Bridge:
 def vehicle_of(table: Any, place: Place) -> AnyVehicle:
     """The vehicle of a table: a preset, bodies and axles, or a train."""
     if not isinstance(table, Mapping):
-        raise place.no_table(table)
+        raise place.wrong(table, "a table, []")
     if "preset" in table:
         return _preset(table, place)
 
