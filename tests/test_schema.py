@@ -181,7 +181,7 @@ REFUSED = [
     ),
     (
         "[ensemble]\nroad = { kind = 'step' }",
-        r"^case, \[ensemble\]: road: missing at, height",
+        r"^case, \[ensemble\]: unknown key 'road' \(a table of its own, \[road\]\)",
     ),
     ("[crossing]\nsamples = 2", r"unknown key 'samples' \(belongs in \[ensemble\]\)"),
     ("[crossing]\nspeed = '20'", r"^case, \[crossing\]: speed = '20': must be a number$"),

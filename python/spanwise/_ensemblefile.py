@@ -23,7 +23,7 @@ from spanwise.damping import in_words
 from spanwise.population import Ensemble
 from spanwise.roads import Road
 from spanwise.samples import FACTORS
-from spanwise.schema import Reading, bridge_of, event_table
+from spanwise.schema import Reading, bridge_of, event_table, events_of
 from spanwise.traffic import plain_drive
 
 #: Percentiles of the plain values.
@@ -170,7 +170,7 @@ def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
 def _recipe(tables: Mapping[str, Any]) -> Recipe:
     """What `settings` tells, as `ensemble` would understand it."""
     reading = Reading()
-    events = reading.events(tables["events"], reading.place("events"))
+    events = events_of(tables["events"], reading.place("events"))
     asked = Maker(recipe_of, without=("bridge", "vehicle"), needs=("samples",))
     given: dict[str, Any] = dict.fromkeys(asked.keys)
     given |= asked.arguments(tables["ensemble"], reading.place("ensemble"))

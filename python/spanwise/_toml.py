@@ -22,12 +22,13 @@ def table_of(made: DataclassInstance, *, defaults: bool = True) -> dict[str, Any
     """
     kind = getattr(type(made), "kind", None)
     table: dict[str, Any] = {"kind": kind} if isinstance(kind, str) else {}
-    for each in fields(made):
-        value = getattr(made, each.name)
-        empty = value is None or (isinstance(value, tuple) and not value)
-        if not empty and (defaults or not same(value, each.default)):
-            table[each.name] = _plain(value, defaults)
-    return table
+    given = {each.name: getattr(made, each.name) for each in fields(made)}
+    usual = {} if defaults else {each.name: each.default for each in fields(made)}
+    return table | {
+        key: _plain(value, defaults)
+        for key, value in given.items()
+        if not any(same(value, each) for each in (None, (), usual.get(key)))
+    }
 
 
 def _plain(value: Any, defaults: bool) -> Any:
@@ -38,41 +39,38 @@ def _plain(value: Any, defaults: bool) -> Any:
     return [_plain(each, defaults) for each in value] if isinstance(value, list | tuple) else value
 
 
-def toml(tables: Mapping[str, Any]) -> str:
-    """Tables by name as TOML."""
-    return "\n".join(_lines(tables, "")).lstrip("\n")
+def toml(table: Mapping[str, Any]) -> str:
+    """A table of tables as TOML."""
+    return "\n".join(_lines(table, "")).lstrip("\n")
 
 
 def _lines(table: Mapping[str, Any], name: str) -> Iterator[str]:
     """The values of a table, but None, then each table in it after a blank line and its name."""
-    inner = {key: each for key, each in table.items() if _is_table(each) or _is_tables(each)}
-    plain = {key: each for key, each in table.items() if key not in inner and each is not None}
-    yield from (f"{key} = {toml_value(each)}" for key, each in plain.items())
-    for key, each in inner.items():
+    inner = {key: tables for key, each in table.items() if (tables := _tables(each))}
+    for key, each in table.items():
+        if key not in inner and each is not None:
+            yield f"{key} = {toml_value(each)}"
+    for key, tables in inner.items():
         path = f"{name}.{key}" if name else key
-        for one in each if isinstance(each, list) else [each]:
-            if isinstance(each, list):
+        for one in tables:
+            if tables is table[key]:
                 yield from ("", f"[[{path}]]")
-            elif not one or not all(_is_table(v) or _is_tables(v) for v in one.values()):
+            elif not one or not all(map(_tables, one.values())):
                 yield from ("", f"[{path}]")
             yield from _lines(one, path)
 
 
-def _is_table(value: object) -> bool:
-    return isinstance(value, Mapping)
-
-
-def _is_tables(value: object) -> bool:
-    return isinstance(value, list) and len(value) > 0 and all(map(_is_table, value))
+def _tables(value: object) -> list[Any]:
+    """The tables that a value is, or none."""
+    if isinstance(value, list):
+        return value if all(isinstance(each, Mapping) for each in value) else []
+    return [value] if isinstance(value, Mapping) else []
 
 
 def toml_value(value: Any) -> str:
     """A value as TOML, a table on one line."""
-    if isinstance(value, str | bool):
-        return json.dumps(value)
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {toml_value(value[key])}' for key in value)} }}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(toml_value, value))}]"
-    if isinstance(value, Mapping):
-        inner = (f"{key} = {toml_value(each)}" for key, each in value.items())
-        return f"{{ {', '.join(inner)} }}"
-    return repr(value)
+    return json.dumps(value) if isinstance(value, str | bool) else repr(value)

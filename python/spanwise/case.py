@@ -22,7 +22,7 @@ from spanwise.population import Ensemble
 from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
-from spanwise.schema import PASSAGE, PLACES, Reading, belongs, bridge_of, vehicle_of
+from spanwise.schema import PASSAGE, PLACES, Reading, belongs, bridge_of, events_of, vehicle_of
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
@@ -53,11 +53,13 @@ def _for_ensembles(*, advance: float | None = None) -> None:
 CROSSING: Final = Maker(
     cross, options_of=_for_ensembles, without=("bridge", "vehicle", "road"), needs=()
 )
-SAMPLING: Final = Maker(ensemble, without=("bridge", "vehicle", "threads", "progress"), needs=())
+SAMPLING: Final = Maker(
+    ensemble, without=("bridge", "vehicle", "road", "threads", "progress"), needs=()
+)
 _PLACES: Final[Mapping[str, Mapping[str, Container[str]]]] = {
     **PLACES,
     "crossing": {"[crossing]": CROSSING.keys},
-    "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys() - {"road"}},
+    "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys()},
 }
 
 
@@ -138,23 +140,25 @@ class Case(Hashed):
     def __post_init__(self) -> None:
         if not isinstance(self.bridge, Bridge):
             raise TypeError(f"bridge = {shown(self.bridge)}: must be a Bridge")
-        object.__setattr__(self, "passages", _passages("passages", self.passages))
-        if not self.passages:
+        passages = _passages("passages", self.passages)
+        if not passages:
             raise ValueError("passages = []: must have at least one")
         if self.road is not None and not isinstance(self.road, Road):
             raise TypeError(f"road = {shown(self.road)}: must be a Road")
         checks_text("source", self.source)
+        events = items("events", self.events, "a list of kinds of event")
+        made: dict[str, Any] = {
+            "passages": passages,
+            "events": tuple(_passages(f"events[{k}]", each) for k, each in enumerate(events)),
+        }
         for name, table, maker in (
             ("crossing", "crossing", CROSSING),
             ("sampling", "ensemble", SAMPLING),
         ):
             given = mapping(name, getattr(self, name), "a mapping of arguments by name")
             with within(f"{self.source}, [{table}]", CaseError):
-                given = maker.checked(given, Reading(home=_home).place(table))
-            object.__setattr__(self, name, given)
-        events = items("events", self.events, "a list of kinds of event")
-        events = [_passages(f"events[{k}]", each) for k, each in enumerate(events)]
-        object.__setattr__(self, "events", tuple(events))
+                made[name] = maker.checked(given, Reading(home=_home).place(table))
+        vars(self).update(made)
 
     @classmethod
     def read(cls, path: str | Path) -> Case:
@@ -212,10 +216,8 @@ class Case(Hashed):
 
         Raises
         ------
-        OSError
-            If a file that it names cannot be read.
-        CaseError
-            A ValueError: if the text is not a case, or a value in it is not allowed.
+        OSError, CaseError
+            As from `read`.
         """
         checks_text("source", source)
         tables = parse_toml(checks_text("text", text), source)
@@ -234,10 +236,8 @@ class Case(Hashed):
 
         Raises
         ------
-        OSError
-            If a file that it names cannot be read.
-        CaseError
-            A ValueError: if a table, key or value is not allowed.
+        OSError, CaseError
+            As from `read`.
         """
         checks_text("source", source)
         with within(source, CaseError):
@@ -255,10 +255,13 @@ class Case(Hashed):
         with within(source, CaseError):
             _check_tables(tables)
             _check_complete(tables)
+        sampling = {**tables.get("ensemble", {})}
+        if "road" in sampling and "road" not in tables:  # where the settings of an ensemble have it
+            tables = {**tables, "road": sampling.pop("road")}
         bridge = read("bridge", bridge_of)
         road = read("road", reading.road) if "road" in tables else None
         if "events" in tables:
-            events = read("events", reading.events)
+            events = read("events", events_of)
         elif "vehicle" in tables:
             events = [(Passage(vehicle=read("vehicle", vehicle_of)),)]
         else:
@@ -266,10 +269,8 @@ class Case(Hashed):
             events = [
                 tuple(read("traffic", PASSAGE.build, one, where=_number(k)) for k, one in each)
             ]
-        crossing = read("crossing", CROSSING.checked, tables.get("crossing", {}))
-        sampling = read("ensemble", SAMPLING.checked, tables.get("ensemble", {}))
         kinds = tuple(events) if len(events) > 1 else ()
-        files = tuple(reading.files)
+        crossing, files = tables.get("crossing", {}), tuple(reading.files)
         return cls(bridge, events[0], crossing, road, source, files, sampling, kinds)
 
     @property
@@ -302,10 +303,8 @@ class Case(Hashed):
 
         Raises
         ------
-        CaseError
-            A ValueError: if a value is not allowed.
-        RuntimeError
-            If the numerics of the bridge fail.
+        CaseError, RuntimeError
+            As from `run`.
         """
         given = {"road": self.road, **self.crossing, **self.sampling, **overrides}
         given |= {} if samples is None else {"samples": samples}

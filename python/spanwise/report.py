@@ -18,9 +18,8 @@ from spanwise._values import envelope, history, places, plain, quantities, stop
 from spanwise.damping import in_words
 from spanwise.responses import QUANTITIES, Quantity
 from spanwise.runs import Run
-from spanwise.schema import passage_table, vehicle_table
+from spanwise.schema import event_table
 from spanwise.table import COLUMNS
-from spanwise.traffic import is_alone
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,11 +119,10 @@ def as_frame(run: Run, quantity: Quantity) -> pd.DataFrame:
     return frame
 
 
-def _traffic(run: Run) -> dict[str, object]:
+def _traffic(run: Run) -> dict[str, Any]:
     """The tables of the vehicles: one alone, or several."""
-    if is_alone(run.passages):
-        return {"vehicle": vehicle_table(run.truck)}
-    return {"traffic": [passage_table(each) for each in run.passages]}
+    table = event_table(run.passages)
+    return {"traffic": table} if isinstance(table, list) else table
 
 
 def _vehicle(run: Run, vehicle: int) -> dict[str, object]:

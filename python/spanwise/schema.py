@@ -23,10 +23,7 @@ from spanwise.vehicles import PRESETS, AnyVehicle
 
 BRIDGE: Final = Maker(Bridge)
 #: Tables in ``[bridge]`` of a bridge that is given from outside.
-GIVEN: Final = {
-    "from_flexibility": Maker(Bridge.from_flexibility),
-    "from_modes": Maker(Bridge.from_modes),
-}
+GIVEN: Final = {m.__name__: Maker(m) for m in (Bridge.from_flexibility, Bridge.from_modes)}
 PASSAGE: Final = Maker(Passage)
 
 #: Keys that can be given beside the preset of a vehicle of one body.
@@ -70,20 +67,13 @@ def belongs(key: str, tables: Mapping[str, Mapping[str, Container[str]]] = PLACE
 
 @dataclass(frozen=True)
 class Reading:
-    """Tables as they are read, with the files that they name.
+    """How the tables of a case are read, and the files that they name."""
 
-    Attributes
-    ----------
-    folder : Path
-        Where these are looked for.
-    home : callable
-        Says where a key belongs that is not allowed where it is.
-    files : list of Path
-        Those that have been read.
-    """
-
+    #: Where these are looked for.
     folder: Path = Path()
+    #: Says where a key belongs that is not allowed where it is.
     home: Callable[[str], str] = belongs
+    #: Those that have been read.
     files: list[Path] = field(default_factory=list)
 
     def place(self, table: str) -> Place:
@@ -105,17 +95,17 @@ class Reading:
             return {**value, "file": str(self.files[-1])}
         return value
 
-    def events(self, tables: Any, place: Place) -> list[tuple[Passage, ...]]:
-        """Kinds of event, each a table of a passage or a list of them."""
-        if not isinstance(tables, list | tuple) or not tables:
-            raise place["events"].wrong(tables, "tables, [[events]]")
-        return [self.event(each, place[k]) for k, each in enumerate(tables)]
 
-    def event(self, value: Any, place: Place) -> tuple[Passage, ...]:
-        """Who crosses at once: a passage, or a list of them."""
-        if isinstance(value, list | tuple):
-            return tuple(PASSAGE.build(each, place[k]) for k, each in enumerate(value))
-        return (PASSAGE.build(value, place),)
+def events_of(tables: Any, place: Place) -> list[tuple[Passage, ...]]:
+    """Kinds of event, each the table of a passage or a list of them."""
+    if not isinstance(tables, list | tuple) or not tables:
+        raise place["events"].wrong(tables, "tables, [[events]]")
+    return [
+        tuple(PASSAGE.build(one, place[k][i]) for i, one in enumerate(each))
+        if isinstance(each, list | tuple)
+        else (PASSAGE.build(each, place[k]),)
+        for k, each in enumerate(tables)
+    ]
 
 
 def bridge_of(table: Any, place: Place) -> Bridge:
@@ -142,24 +132,21 @@ def vehicle_of(table: Any, place: Place) -> AnyVehicle:
 
 def _preset(table: Mapping[str, Any], place: Place) -> AnyVehicle:
     preset = PRESETS[choice(place["preset"].name, table["preset"], PRESETS)]
-    options = {key: table[key] for key in preset.options if key in table}
-    vehicle = preset(**options)
-    allowed = ["preset", *preset.options]
-    if isinstance(vehicle, Vehicle):
-        changed = () if vehicle.bodies else CHANGED
-        allowed += [key for key in (*changed, "initial_friction") if key not in allowed]
+    vehicle = preset(**{key: table[key] for key in preset.options if key in table})
+    changed = CHANGED if isinstance(vehicle, Vehicle) and not vehicle.bodies else ()
+    allowed = dict.fromkeys(("preset", *preset.options, *changed))
+    allowed |= {"initial_friction": None} if isinstance(vehicle, Vehicle) else {}
 
     def home(key: str) -> str:
         return " (not beside this preset)" if key in _VEHICLE else place.home(key)
 
-    check_known(table, allowed, replace(place, home=home))
-    if not isinstance(vehicle, Vehicle):
-        return vehicle
-    changes = {key: table[key] for key in CHANGED if key in table and key not in options}
-    vehicle = replace(vehicle, **changes)
-    if "initial_friction" in table:
-        friction = numbers("initial_friction", table["initial_friction"])
-        vehicle = vehicle.with_initial_friction(*friction)
+    check_known(table, [*allowed], replace(place, home=home))
+    if isinstance(vehicle, Vehicle):
+        own = {*changed} - {*preset.options}
+        vehicle = replace(vehicle, **{key: table[key] for key in table if key in own})
+        if "initial_friction" in table:
+            friction = numbers("initial_friction", table["initial_friction"])
+            vehicle = vehicle.with_initial_friction(*friction)
     return vehicle
 
 
