@@ -6,10 +6,9 @@ import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, dataclass, replace
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import pytest
-from numpy.typing import ArrayLike
 
 from spanwise._build import Maker, Place, build_kind, build_one
 from spanwise._toml import table_of, toml
@@ -133,65 +132,6 @@ def test_a_required_key_tells_what_is_made(table: dict[str, Any], expected: Any)
         return
     with pytest.raises(ValueError, match=expected):
         build_one(makers, table, PLACE)
-
-
-def settings(
-    what: object,
-    *,
-    number: float | None = None,
-    whole: int = 1,
-    yes: bool = True,
-    word: Literal["one", "two"] = "one",
-    words: Sequence[Literal["one", "two"]] | None = None,
-    row: Sequence[float] = (),
-    values: ArrayLike | None = None,
-    by_name: Mapping[str, ArrayLike] | None = None,
-    leaf: Leaf | None = None,
-) -> None: ...
-
-
-GIVEN: dict[str, Any] = {
-    "number": "inf",
-    "whole": 3,
-    "yes": False,
-    "word": "two",
-    "words": ["one", "two"],
-    "row": [1, 2.0],
-    "values": [[1.0, 2.0]],
-    "by_name": {"a": 1.0, "b": [1.0]},
-    "leaf": {"size": 1.0},
-}
-
-
-def test_plain_values_are_checked_where_nothing_is_made_of_them() -> None:
-    maker = Maker(settings, without=("what",))
-    found = maker.checked(GIVEN, PLACE)
-    assert found == GIVEN | {"number": math.inf, "leaf": Leaf(size=1.0)}
-    # Once more, with objects in place of tables.
-    assert maker.checked(found, PLACE) == found
-    assert maker.checked({"number": None, "leaf": None}, PLACE) == {"number": None, "leaf": None}
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "message"),
-    [
-        ("number", "1", "^number = '1': must be a number$"),
-        ("whole", 1.5, "^whole = 1.5: must be a whole number$"),
-        ("yes", 1, "^yes = 1: must be true or false$"),
-        ("word", "tow", r"^word = 'tow': must be one of one, two \(did you mean 'two'\?\)$"),
-        ("words", ["one", 3], r"^words\[1\] = 3: must be one of one, two$"),
-        ("words", 3, "^words = 3: must be a list$"),
-        ("row", [1, "2"], r"^row\[1\] = '2': must be a number$"),
-        ("values", ["a"], r"^values = \['a'\]: must be a number or an array of numbers$"),
-        ("by_name", {"a": "x"}, r"^by_name\.a = 'x': must be a number"),
-        ("by_name", 3, "^by_name = 3: must be a mapping$"),
-        ("leaf", {}, "^leaf: missing size$"),
-        ("what", 1, "^unknown key 'what'; allowed: number, whole"),
-    ],
-)
-def test_a_plain_value_of_another_type_is_refused(key: str, value: object, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        Maker(settings, without=("what",)).checked({key: value}, PLACE)
 
 
 def test_objects_become_tables() -> None:

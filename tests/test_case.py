@@ -449,13 +449,13 @@ REFUSED = [
     # Crossing
     (
         BRIDGE + VEHICLE + CROSSING + "sped = 1",
-        r"'sped' \(did you mean 'speed'\?\); allowed: speed,",
+        r"'sped' \(did you mean 'speed'\?\); allowed: modes, drive, ",
     ),
     (BRIDGE + VEHICLE + CROSSING + "DRIVE = 1", r"'DRIVE' \(did you mean 'drive'\?\)"),
     (BRIDGE + VEHICLE + CROSSING + "EI = 1", r"unknown key 'EI' \(belongs in \[bridge\]\)"),
     (
         BRIDGE + VEHICLE + CROSSING + "bridge = 1",
-        r"'bridge' \(a table of its own, \[bridge\]\); allowed: s",
+        r"'bridge' \(a table of its own, \[bridge\]\); allowed: modes",
     ),
     # Traffic
     (

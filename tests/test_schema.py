@@ -166,14 +166,14 @@ def test_a_bridge_from_outside_stands_in_a_case() -> None:
 
 REFUSED = [
     ("[ensemble]\nsamples = 2.5", r"^case, \[ensemble\]: samples = 2\.5: must be a whole number$"),
-    ("[ensemble]\nsampels = 2", r"'sampels' \(did you mean 'samples'\?\); allowed: samples, seed"),
+    ("[ensemble]\nsampels = 2", r"'sampels' \(did you mean 'samples'\?\); allowed: modes, drive"),
     ("[ensemble]\nEI = 2", r"^case, \[ensemble\]: unknown key 'EI' \(belongs in \[bridge\]\)"),
     ("[ensemble]\nthreads = 2", r"^case, \[ensemble\]: unknown key 'threads'; allowed"),
     ("[ensemble]\nspeed = ['a']", r"^case, \[ensemble\]: speed = \['a'\]: must be a number or an"),
     ("[ensemble]\nfactors = 3", r"^case, \[ensemble\]: factors = 3: must be a mapping"),
     (
         "[ensemble]\nfactors = { body_mass = 'a' }",
-        r"^case, \[ensemble\]: factors\.body_mass = 'a': must be a number",
+        r"^case, \[ensemble\]: factors\['body_mass'\] = 'a': must be a number",
     ),
     (
         "[ensemble]\nquantities = ['momentum']",
@@ -190,7 +190,7 @@ REFUSED = [
     ("[crossing]\nsections = [1, 'a']", r"^case, \[crossing\]: sections\[1\] = 'a': must be"),
     (
         "[crossing]\nrecovery = 'forces'",
-        r"^case, \[crossing\]: recovery = 'forces': must be one of force-summation, ",
+        r"^case, \[crossing\]: recovery = 'forces': must be force-summation, .* or superposition$",
     ),
     ("[crossing]\ndrive = 'slow'", r"^case, \[crossing\]: drive = 'slow': must be constant-speed"),
     (

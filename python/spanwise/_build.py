@@ -14,17 +14,14 @@ from typing import (
     Any,
     Final,
     Generic,
-    Literal,
     TypeAlias,
     TypeVar,
     Union,
     get_args,
     get_origin,
+    get_type_hints,
 )
 
-from numpy.typing import ArrayLike
-
-from spanwise import _checks
 from spanwise._checks import choice, shown
 from spanwise._keys import suggestion
 
@@ -99,8 +96,7 @@ class Maker(Generic[T]):
     def keys(self) -> dict[str, Parameter]:
         """Arguments by key."""
         names = {argument: key for key, argument in self.called.items()}
-        callables = filter(None, (self.make, self.options_of))
-        found = [p for c in callables for p in signature(c, eval_str=True).parameters.values()]
+        found = [one for each in (self.make, self.options_of) if each for one in _arguments(each)]
         named = [p for p in found if p.kind is not p.VAR_KEYWORD and p.name not in self.without]
         return {names.get(each.name, each.name): each for each in named}
 
@@ -122,13 +118,6 @@ class Maker(Generic[T]):
             self.keys[key].name: _built(self.keys[key].annotation, value, place[key])
             for key, value in table.items()
         }
-
-    def checked(self, table: object, place: Place) -> dict[str, Any]:
-        """The same for what is not called at once: plain values too are of the types of hints."""
-        arguments = self.arguments(table, place)
-        for key, value in arguments.items():
-            _check(self.keys[key].annotation, value, place[key])
-        return arguments
 
     def build(self, table: object, place: Place, others: Sequence[str] = ()) -> T:
         """What it makes of a table."""
@@ -174,6 +163,15 @@ def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:
     return {key for makers in kinds.values() for each in makers for key in each.keys}
 
 
+def _arguments(function: Callable[..., Any]) -> Iterator[Parameter]:
+    """The arguments of a function or a class, with their hints evaluated."""
+    target: Any = function
+    is_plain = isinstance(function, type) and not is_dataclass(function)
+    hints = get_type_hints(target.__init__ if is_plain else function)
+    for each in signature(function).parameters.values():
+        yield each.replace(annotation=hints[each.name])
+
+
 _maker: Final = cache(Maker)
 
 
@@ -200,28 +198,3 @@ def _built(hint: Any, value: Any, place: Place) -> Any:
             return [_built(get_args(each)[0], one, place[k]) for k, one in enumerate(value)]
     # JSON has no infinity.
     return math.inf if float in types and isinstance(value, str) and value == "inf" else value
-
-
-_CHECKS: Final[dict[Any, Callable[[str, object], object]]] = {
-    **{bool: _checks.flag, int: _checks.whole, float: _checks.number},
-    Sequence[float]: _checks.numbers,
-}
-
-
-def _check(hint: Any, value: Any, place: Place) -> None:
-    """Refuses a value that is not of its type, where that is of plain values."""
-    kind, *others = types = [each for each in _types(hint) if each is not NoneType]
-    if value is None or any(each in place.readers for each in types):
-        return
-    if set(types) >= set(get_args(ArrayLike) or [ArrayLike]):
-        _checks.array(place.name, value)
-    elif kind in _CHECKS:
-        _CHECKS[kind](place.name, value)
-    elif get_origin(kind) is Literal and not others:
-        _checks.named(place.name, value, get_args(kind))
-    elif get_origin(kind) is Sequence:
-        for k, each in enumerate(_checks.items(place.name, value)):
-            _check(get_args(kind)[0], each, place[k])
-    elif get_origin(kind) is Mapping:
-        for key, each in _checks.mapping(place.name, value).items():
-            _check(get_args(kind)[1], each, place[key])

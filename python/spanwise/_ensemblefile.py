@@ -13,7 +13,7 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from spanwise import _core
-from spanwise._asked import recipe_of
+from spanwise._asked import Asked, recipe_of
 from spanwise._build import Maker
 from spanwise._files import write_files
 from spanwise._recipe import Recipe
@@ -171,12 +171,9 @@ def _recipe(tables: Mapping[str, Any]) -> Recipe:
     """What `settings` tells, as `ensemble` would understand it."""
     reading = Reading()
     events = events_of(tables["events"], reading.place("events"))
-    asked = Maker(recipe_of, without=("bridge", "vehicle"), needs=("samples",))
-    given: dict[str, Any] = dict.fromkeys(asked.keys)
-    given |= asked.arguments(tables["ensemble"], reading.place("ensemble"))
     bridge = bridge_of(tables["bridge"], reading.place("bridge"))
-    recipe, _ = recipe_of(bridge, [*map(list, events)], **given)
-    return recipe
+    asked = Maker(Asked).build(tables["ensemble"], reading.place("ensemble"))
+    return recipe_of(bridge, [*map(list, events)], asked)[0]
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def factors_of(
     samples: int,
 ) -> list[Factors]:
     """All factors, those that values come to included."""
-    given, absolute = _table("factors", factors), _table("values", values)
+    given, absolute = by_parameter("factors", factors), by_parameter("values", values)
     for name in absolute:
         if name in given:
             raise ValueError(f"values: {name} is among the factors too; give one of the two")
@@ -196,7 +196,8 @@ def _plural(name: str) -> str:
     return "bodies" if name in OF_BODIES else "axles"
 
 
-def _table(key: str, table: object) -> Mapping[str, object]:
+def by_parameter(key: str, table: object) -> dict[str, Array]:
+    """Numbers by the name of what varies."""
     if table is None:
         return {}
     if not isinstance(table, Mapping):
@@ -208,12 +209,11 @@ def _table(key: str, table: object) -> Mapping[str, object]:
             raise ValueError(
                 f"{key}: unknown parameter {shown(name)}{near}; allowed: {', '.join(allowed)}"
             )
-    return table
+    return {name: array(f"{key}[{name!r}]", each) for name, each in table.items()}
 
 
-def _columns(key: str, name: str, given: object, samples: int) -> Array:
+def _columns(key: str, name: str, values: Array, samples: int) -> Array:
     """Shape (1, 1) for a number, else one row for each sample."""
-    values = array(f"{key}[{name!r}]", given)
     if key == "values" and name != "initial_friction":
         if (wrong := values < 0.0).any():
             said = first_of(f"values[{name!r}]", values, wrong)

@@ -10,10 +10,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from spanwise._asked import Asked
 from spanwise._build import Maker, Place, Table, check_known, within
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
+from spanwise._conditions import Crossing
 from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
@@ -45,17 +47,9 @@ TABLES: Final = {
 }
 
 
-def _for_ensembles(*, advance: float | None = None) -> None:
-    """What `ensemble` alone uses of ``[crossing]``."""
-
-
 #: The road has a table of its own.
-CROSSING: Final = Maker(
-    cross, options_of=_for_ensembles, without=("bridge", "vehicle", "road"), needs=()
-)
-SAMPLING: Final = Maker(
-    ensemble, without=("bridge", "vehicle", "road", "threads", "progress"), needs=()
-)
+CROSSING: Final = Maker(Crossing)
+SAMPLING: Final = Maker(Asked, without=("road",))
 _PLACES: Final[Mapping[str, Mapping[str, Container[str]]]] = {
     **PLACES,
     "crossing": {"[crossing]": CROSSING.keys},
@@ -157,7 +151,8 @@ class Case(Hashed):
         ):
             given = mapping(name, getattr(self, name), "a mapping of arguments by name")
             with within(f"{self.source}, [{table}]", CaseError):
-                made[name] = maker.checked(given, Reading(home=_home).place(table))
+                made[name] = maker.arguments(given, Reading(home=_home).place(table))
+                maker.make(**made[name])
         vars(self).update(made)
 
     @classmethod

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from numpy.typing import ArrayLike
 
 from spanwise import _core
-from spanwise._asked import recipe_of
+from spanwise._asked import Asked, recipe_of
 from spanwise._checks import count, shown
 from spanwise._conditions import Recovery
 from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
@@ -171,9 +171,7 @@ def ensemble(
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
-    recipe, speeds = recipe_of(
-        bridge,
-        vehicle,
+    asked = Asked(
         samples=samples,
         seed=seed,
         first=first,
@@ -199,6 +197,7 @@ def ensemble(
         lift_off=lift_off,
         mask=mask,
     )
+    recipe, speeds = recipe_of(bridge, vehicle, asked)
     conditions, events = recipe.conditions, recipe.events
     for remark in recipe.idle():
         warn(remark)
