@@ -329,7 +329,7 @@ stiffness = 2e5
 damping = 3e3
 """
 
-KNOWN = r"allowed: bridge, vehicle, traffic, road, crossing, ensemble, events"
+KNOWN = r"allowed: bridge, vehicle, road, crossing, ensemble, traffic, events"
 REFUSED = [
     # Tables
     ("", r"case: missing \[bridge\], \[vehicle\], \[crossing\]"),

@@ -32,6 +32,8 @@ def table_of(made: DataclassInstance, *, defaults: bool = True) -> dict[str, Any
 
 
 def _plain(value: Any, defaults: bool) -> Any:
+    if hasattr(value, "arguments"):  # a road, which knows better
+        return value.arguments
     if is_dataclass(value) and not isinstance(value, type):
         return table_of(value, defaults=defaults)
     if isinstance(value, np.ndarray):

@@ -37,13 +37,8 @@ VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
 #: Tables, as they are written.
 TABLES: Final = {
-    "bridge": "[bridge]",
-    "vehicle": "[vehicle]",
-    "traffic": "[[traffic]]",
-    "road": "[road]",
-    "crossing": "[crossing]",
-    "ensemble": "[ensemble]",
-    "events": "[[events]]",
+    **{name: f"[{name}]" for name in ("bridge", "vehicle", "road", "crossing", "ensemble")},
+    **{name: f"[[{name}]]" for name in ("traffic", "events")},
 }
 
 

@@ -119,9 +119,7 @@ def bridge_of(table: Any, place: Place) -> Bridge:
 
 def vehicle_of(table: Any, place: Place) -> AnyVehicle:
     """The vehicle of a table: a preset, bodies and axles, or a train."""
-    if not isinstance(table, Mapping):
-        raise place.wrong(table, "a table, []")
-    if "preset" in table:
+    if isinstance(table, Mapping) and "preset" in table:
         return _preset(table, place)
 
     def home(key: str) -> str:
@@ -164,12 +162,11 @@ def vehicle_table(vehicle: AnyVehicle, *, defaults: bool = True) -> dict[str, An
 
 def passage_table(passage: Passage) -> dict[str, Any]:
     """The table of a passage."""
-    road = {} if passage.road is None else {"road": passage.road.arguments}
-    return table_of(passage) | {"vehicle": vehicle_table(passage.vehicle)} | road
+    return table_of(passage) | {"vehicle": vehicle_table(passage.vehicle)}
 
 
 def event_table(passages: Sequence[Passage]) -> Any:
-    """What `Reading.event` makes these passages of."""
+    """What `events_of` makes these passages of."""
     if is_alone(passages):
         return {"vehicle": vehicle_table(passages[0].vehicle)}
     return [passage_table(each) for each in passages]
