@@ -477,7 +477,7 @@ REFUSED = [
     ),
     (
         BRIDGE + TRAFFIC.replace('direction = "left"', 'direction = "west"') + CROSSING,
-        r"case, \[\[traffic\]\] number 2: direction = \"west\": must be right or left",
+        r"case, \[\[traffic\]\] number 2: direction = 'west': must be right or left",
     ),
     (
         BRIDGE + TRAFFIC.replace("lane = 3", "lane = 3.5") + CROSSING,

@@ -281,7 +281,7 @@ REFUSED: list[tuple[Callable[[], object], tuple[str, ...]]] = [
     (lambda: passage(lane=1.5), ("lane = 1.5", "whole number")),
     (lambda: passage(lane=True), ("lane = True", "whole number")),
     (lambda: passage(direction=1), ("direction = 1", "right or left")),
-    (lambda: passage(direction="west"), ('direction = "west"', "must be right or left")),
+    (lambda: passage(direction="west"), ("direction = 'west'", "must be right or left")),
     (lambda: passage(drive="slow"), ("drive = 'slow'", "constant-speed or constant-traction")),
     (lambda: sw.Braking(deceleration=-3.0), ("braking deceleration = -3: must be finite and",)),
     (lambda: sw.Acceleration(acceleration=nan), ("acceleration = NaN: must be a finite number",)),

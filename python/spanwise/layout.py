@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeAlias, TypeVar
 
 from spanwise._build import Maker, Place, within
-from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
+from spanwise._checks import Numbers, count, items, number, numbers, one_of, pair, shown
 from spanwise._value import Hashed
 
 T = TypeVar("T")
+
+#: Springs of rigid supports by their kind [N/m, N m/rad].
+RIGID: Final = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
 TAPER_PIECES: Final = 32
@@ -44,8 +47,8 @@ class Support:
     @property
     def kind(self) -> str:
         """``"pinned"``, ``"clamped"`` or, with a spring, ``"elastic"``."""
-        rigid = {(math.inf, 0.0): "pinned", (math.inf, math.inf): "clamped"}
-        return rigid.get((self.vertical, self.rotation), "elastic")
+        springs = (self.vertical, self.rotation)
+        return next((kind for kind, each in RIGID.items() if each == springs), "elastic")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,10 +107,7 @@ def support(key: str, value: object) -> Support:
         return value
     other = "or a Support or table with at, vertical and rotation"
     at, kind = pair(key, value, f"a pair of position and kind, {other}")
-    kinds = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
-    if not isinstance(kind, str) or kind not in kinds:
-        raise ValueError(f"{key} = {shown(kind)}: must be pinned or clamped")
-    vertical, rotation = kinds[kind]
+    vertical, rotation = RIGID[one_of(key, kind, [*RIGID])]
     return Support(at=number(f"{key} position", at), vertical=vertical, rotation=rotation)
 
 

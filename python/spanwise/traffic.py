@@ -12,10 +12,10 @@ from spanwise._checks import (
     items,
     not_negative,
     numbers,
+    one_of,
     positive,
     shown,
     whole_from,
-    word,
 )
 from spanwise._toml import table_of
 from spanwise._value import Brief
@@ -221,8 +221,7 @@ class Passage:
         if self.speed is not None and isinstance(self.drive, Speeds):
             raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
         object.__setattr__(self, "entry", not_negative("entry", self.entry))
-        if word("direction", self.direction, *get_args(Direction)) not in get_args(Direction):
-            raise ValueError(f'direction = "{self.direction}": must be right or left')
+        one_of("direction", self.direction, get_args(Direction))
         if self.lane is not None:
             lane = whole_from("lane", self.lane, -MOST_LANE, MOST_LANE)
             object.__setattr__(self, "lane", lane)
