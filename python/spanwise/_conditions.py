@@ -47,7 +47,7 @@ class Settings:
     lift_off: bool = True
     mask: float = 0.05
 
-    #: What checks a value that is not a number.
+    #: What checks and understands a value that is not a number.
     checks: ClassVar[Mapping[str, Callable[[str, Any], object]]] = {
         "modes": count,
         "drive": lambda key, value: drive_of(value),
@@ -68,7 +68,7 @@ class Settings:
 
 @dataclass(frozen=True, kw_only=True)
 class Crossing(Settings):
-    """What `cross` is asked for; an ensemble may have `advance` from where a crossing has this."""
+    """What `cross` is asked for, and `advance`, which ensembles take from ``[crossing]`` too."""
 
     speed: float | None = None
     advance: float | None = None

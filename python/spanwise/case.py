@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -24,7 +24,16 @@ from spanwise.population import Ensemble
 from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
-from spanwise.schema import PASSAGE, PLACES, Reading, belongs, bridge_of, events_of, vehicle_of
+from spanwise.schema import (
+    PASSAGE,
+    Places,
+    Reading,
+    belongs,
+    bridge_of,
+    events_of,
+    places,
+    vehicle_of,
+)
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
@@ -45,11 +54,6 @@ TABLES: Final = {
 #: The road has a table of its own.
 CROSSING: Final = Maker(Crossing)
 SAMPLING: Final = Maker(Asked, without=("road",))
-_PLACES: Final[Mapping[str, Mapping[str, Container[str]]]] = {
-    **PLACES,
-    "crossing": {"[crossing]": CROSSING.keys},
-    "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys()},
-}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -358,4 +362,8 @@ def _home(key: str) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
     if key in TABLES and key != "vehicle":
         return f" (a table of its own, {TABLES[key]})"
-    return belongs(key, _PLACES)
+    own: Places = {
+        "crossing": {"[crossing]": CROSSING.keys},
+        "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys()},
+    }
+    return belongs(key, {**places(), **own})

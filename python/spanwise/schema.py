@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from spanwise._build import Maker, Place, build_one, check_known, keys_of
 from spanwise._checks import choice, numbers
@@ -38,29 +39,34 @@ VEHICLES: Final[tuple[Maker[AnyVehicle], ...]] = (
 #: What some presets can be given, and nothing else.
 OPTIONS: Final = {key for preset in PRESETS.values() for key in preset.options} - {*CHANGED}
 
-_VEHICLE: Final = {"preset", *(key for each in VEHICLES for key in each.keys), *OPTIONS}
-
-#: Where keys belong: the places in each table of a case, of which the first with the key counts.
-PLACES: Final[dict[str, dict[str, Container[str]]]] = {
-    "bridge": {"[bridge]": BRIDGE.keys},
-    "vehicle": {
-        "[vehicle]": _VEHICLE,
-        "each [[vehicle.axles]]": Maker(Axle).keys,
-        "[vehicle.bodies.hinge]": Maker(Hinge).keys,
-        "each [[vehicle.bodies.springs]]": Maker(Spring).keys,
-        "each [[vehicle.bodies]]": Maker(Body).keys,
-    },
-    "traffic": {"each [[traffic]]": ("direction", "entry", "lane")},
-    "road": {"[road]": {"kind", *keys_of(ROADS)}},
-    "drive": {"a drive": keys_of(DRIVES)},
-}
+#: Places in each table of a case, and the keys that belong there.
+Places: TypeAlias = Mapping[str, Mapping[str, Container[str]]]
 
 
-def belongs(key: str, tables: Mapping[str, Mapping[str, Container[str]]] = PLACES) -> str:
+@cache
+def places() -> Places:
+    """Where keys belong; of the places in a table the first that has the key counts."""
+    vehicle = {"preset", *OPTIONS, *(key for each in VEHICLES for key in each.keys)}
+    return {
+        "bridge": {"[bridge]": BRIDGE.keys},
+        "vehicle": {
+            "[vehicle]": vehicle,
+            "each [[vehicle.axles]]": Maker(Axle).keys,
+            "[vehicle.bodies.hinge]": Maker(Hinge).keys,
+            "each [[vehicle.bodies.springs]]": Maker(Spring).keys,
+            "each [[vehicle.bodies]]": Maker(Body).keys,
+        },
+        "traffic": {"each [[traffic]]": ("direction", "entry", "lane")},
+        "road": {"[road]": {"kind", *keys_of(ROADS)}},
+        "drive": {"a drive": keys_of(DRIVES)},
+    }
+
+
+def belongs(key: str, tables: Places | None = None) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
     found = [
-        next((place for place, keys in places.items() if key in keys), "")
-        for places in tables.values()
+        next((place for place, keys in each.items() if key in keys), "")
+        for each in (tables or places()).values()
     ]
     return f" (belongs in {', '.join(filter(None, found))})" if any(found) else ""
 
@@ -135,8 +141,10 @@ def _preset(table: Mapping[str, Any], place: Place) -> AnyVehicle:
     allowed = dict.fromkeys(("preset", *preset.options, *changed))
     allowed |= {"initial_friction": None} if isinstance(vehicle, Vehicle) else {}
 
+    known = places()["vehicle"]["[vehicle]"]
+
     def home(key: str) -> str:
-        return " (not beside this preset)" if key in _VEHICLE else place.home(key)
+        return " (not beside this preset)" if key in known else place.home(key)
 
     check_known(table, [*allowed], replace(place, home=home))
     if isinstance(vehicle, Vehicle):
