@@ -59,7 +59,7 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     axle, of_bodies = 0, []
     for vehicle in run.vehicles:
         x = vehicle.axle_positions
-        on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
+        on = ((x >= -1e-9) & (x <= run.bridge.length + 1e-9)).any(axis=1)
         first, last = np.flatnonzero(on)[[0, -1]]
         there, own = slice(first, last + 1), slice(axle, axle + x.shape[1])
         axle += x.shape[1]

@@ -248,7 +248,7 @@ def test_command_on_the_same_road(case: Path, capsys: pytest.CaptureFixture[str]
         (["--samples", "3", "--threads", "0"], "threads = 0: must be 1 or more"),
         (["--samples", "3", "--out", "here.txt"], "--out here.txt: must end in .npz"),
         (["--samples", "3", "--out", "missing/here.npz"], "missing: no such folder"),
-        ([], "the following arguments are required: --samples"),
+        ([], "--samples: missing; give it, or samples in [ensemble] of"),
     ],
 )
 def test_command_refuses(

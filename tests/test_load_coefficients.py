@@ -20,7 +20,7 @@ def by_hand(run: sw.Run) -> np.ndarray:
     found: list[float] = []
     for vehicle in run.vehicles:
         x = vehicle.axle_positions
-        on = ((x >= 0.0) & (x <= run.bridge.length + 1e-9)).any(axis=1)
+        on = ((x >= -1e-9) & (x <= run.bridge.length + 1e-9)).any(axis=1)
         first, last = np.flatnonzero(on)[[0, -1]]
         own = slice(len(found), len(found) + x.shape[1])
         parts = run.axle_loads[first : last + 1, own] / run.static_axle_loads[own] - 1.0

@@ -12,6 +12,8 @@ ROOT = Path(__file__).resolve().parent.parent / "rust"
 
 # `use a::{b, c::d};`, and `a::b::c` elsewhere: from the crate, the parent, or a file declared here.
 USE = re.compile(r"^\s*(?:pub\s+|pub\(\w+\)\s+)?use\s+([\w:{}\s,*]+);", re.MULTILINE)
+# What a front page only shows of its own files it does not take: `pub use c::d;`.
+SHOWN = re.compile(r"^pub use (?!crate\b|super\b|self\b)[\w:{}\s,*]+;", re.MULTILINE)
 PATH = re.compile(r"\b(?:crate|super)(?:::\w+)+")
 
 
@@ -37,7 +39,7 @@ def leaves(tree: str) -> list[str]:
 
 def uses(module: Module, text: str, known: dict[Module, Path]) -> set[Module]:
     """The files that this one takes something from."""
-    text = re.sub(r"//.*", "", text)
+    text = SHOWN.sub("", re.sub(r"//.*", "", text))
     trees = [re.sub(r"\s+", "", tree) for tree in USE.findall(text)]
     paths = [path for tree in trees for path in leaves(tree)] + PATH.findall(USE.sub("", text))
     found = set()
@@ -109,6 +111,13 @@ def test_a_circle_is_found(tmp_path: Path, back: str) -> None:
     assert circle(graph(tmp_path)) == []
     (tmp_path / "b" / "c.rs").write_text(back)
     assert set(circle(graph(tmp_path))) == {"a", "b::c"}
+
+
+def test_what_a_front_page_only_shows_is_no_circle(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a.rs").write_text("mod b;\npub use b::{Shown, f};\npub struct Own;")
+    (tmp_path / "a" / "b.rs").write_text("use super::Own;")
+    assert circle(graph(tmp_path)) == []
 
 
 def test_a_child_of_its_parent_is_a_circle(tmp_path: Path) -> None:

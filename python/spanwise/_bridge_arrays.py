@@ -8,8 +8,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._build import Place, check_known
 from spanwise._checks import array, shown
-from spanwise._keys import suggestion
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.quantities import of_bridges
 
@@ -137,10 +137,5 @@ def _table(key: str, value: object) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
         raise ValueError(f"{key} = {shown(value)}: must name its responses: {{'moment': ...}}")
     known = [name for each in of_bridges() for name in each.lines]
-    for name in value:
-        if name not in known:
-            hint = suggestion(name, known)
-            raise ValueError(
-                f"{key}: unknown response {shown(name)}{hint}; allowed: {', '.join(known)}"
-            )
+    check_known(value, known, Place(key), "response")
     return value

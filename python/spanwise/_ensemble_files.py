@@ -6,7 +6,6 @@ import errno
 import json
 import stat
 from collections.abc import Callable, Iterator, Mapping
-from inspect import signature
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 from zipfile import ZIP_STORED, BadZipFile, ZipFile
@@ -14,20 +13,18 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from spanwise import _core
-from spanwise._conditions import Conditions
+from spanwise._build import Maker
 from spanwise._files import write_files
-from spanwise._plain import from_plain, plain
+from spanwise._plain import plain
 from spanwise._plan import Plan
-from spanwise._plan_of_arguments import plan_of
+from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._rows import Rows
-from spanwise._traffictable import is_alone, passage_of, passage_table
-from spanwise._vehicletable import table_of, vehicle_of
-from spanwise.bridge import bridge_of
 from spanwise.damping import in_words
 from spanwise.ensembles import Ensemble
 from spanwise.quantities import parts
-from spanwise.roads import Road, from_table
-from spanwise.traffic import Passage, plain_drive
+from spanwise.roads import Road
+from spanwise.schema import Reading, bridge_of, event_table, events_of
+from spanwise.traffic import plain_drive
 
 #: Percentiles of the plain values.
 PERCENTILES: Final = (1, 5, 25, 50, 75, 95, 99)
@@ -116,7 +113,7 @@ def _read(archive: Any) -> Ensemble:
     if layout.pop("format") != FORMAT:
         raise ValueError("is of another version of spanwise")
     columns = {key: (int(low), int(high)) for key, (low, high) in layout.pop("columns").items()}
-    plan = _plan(from_plain(json.loads(str(archive["settings"]))))
+    plan = _plan(json.loads(str(archive["settings"])))
     width = max(high for _, high in columns.values())
     numbers = np.empty((plan.samples, width))
     axles = (columns["axle_loads"][1] - columns["axle_loads"][0]) // 2
@@ -172,41 +169,27 @@ def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
 
 def _plan(tables: Mapping[str, Any]) -> Plan:
     """What `settings` tells, as `ensemble` would understand it."""
-    given = dict(tables["ensemble"])
-    events = [
-        [Passage(vehicle=vehicle_of(each["vehicle"], _nowhere))]
-        if isinstance(each, Mapping)
-        else [passage_of(one, Path(), _nowhere) for one in each]
-        for each in tables["events"]
-    ]
-    given["road"] = from_table(given["road"])
-    optional = dict.fromkeys((*signature(plan_of).parameters, *signature(Conditions.of).parameters))
-    for each in ("bridge", "vehicle", "conditions", "uneven"):
-        del optional[each]
-    plan, _ = plan_of(bridge_of(tables["bridge"]), events, **{**optional, **given})
-    return plan
-
-
-def _nowhere(_: str) -> str:
-    return ""
+    reading = Reading()
+    events = events_of(tables["events"], reading.place("events"))
+    bridge = bridge_of(tables["bridge"], reading.place("bridge"))
+    asked = Maker(Asked).build(tables["ensemble"], reading.place("ensemble"))
+    return plan_of(bridge, [*map(list, events)], asked)[0]
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:
     """What the ensemble was made of, in plain values, as a case file has it."""
     plan = ensemble._plan
-    events = [
-        {"vehicle": table_of(event[0].vehicle)}
-        if is_alone(event)
-        else [passage_table(each) for each in event]
-        for event in plan.events
-    ]
     given = dict(ensemble.settings)
     road = given["road"]
     assert isinstance(road, Road)
     given["road"] = road.arguments
     given["drive"] = plain_drive(plan.drive)
     table: dict[str, Any] = plain(
-        {"bridge": plan.bridge.arguments, "events": events, "ensemble": given}
+        {
+            "bridge": plan.bridge.arguments,
+            "events": [*map(event_table, plan.events)],
+            "ensemble": given,
+        }
     )
     return table
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._checks import array, as_array, first_of, shown
-from spanwise._traffictable import is_random
 from spanwise._value import Value
 from spanwise._wheels import Wheels
 from spanwise.crossing import made_by, passages_of
 from spanwise.roads import ISO8608, Road, Sum
 from spanwise.roads.base import total
+from spanwise.roads.random import is_random
 from spanwise.traffic import Drive, Passage, core_drive
 from spanwise.traffic import Speeds as SpeedsInTime
 

@@ -1,34 +1,13 @@
-"""Results as plain values, such as JSON can hold, and back."""
+"""Results as plain values, such as JSON can hold."""
 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from numbers import Integral, Real
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
-
-from spanwise._checks import shown
-
-#: Most tables and lists within each other.
-MAX_DEPTH: Final = 32
-
-
-def from_plain(value: Any, name: str = "tables", depth: int = 0) -> Any:
-    """The tables with infinity in place of its name; `name` is that of the value."""
-    if isinstance(value, Mapping | list | tuple) and depth > MAX_DEPTH:
-        raise ValueError(f"{name} = {shown(value)}: has more than {MAX_DEPTH} levels")
-    if isinstance(value, Mapping):
-        before = f"{name}." if depth else ""
-        return {
-            key: from_plain(each, f"{before}{key}" if isinstance(key, str) else name, depth + 1)
-            for key, each in value.items()
-        }
-    if isinstance(value, list | tuple):
-        return [from_plain(each, name, depth + 1) for each in value]
-    return math.inf if isinstance(value, str) and value == "inf" else value
 
 
 def plain(value: object) -> Any:

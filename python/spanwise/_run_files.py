@@ -17,12 +17,11 @@ from spanwise._core import __version__
 from spanwise._door import require
 from spanwise._files import write_files
 from spanwise._plain import json_lines, plain
-from spanwise._traffictable import is_alone, passage_table
-from spanwise._vehicletable import table_of
 from spanwise.damping import in_words
 from spanwise.motions import Motion, VehicleMotion
 from spanwise.quantities import Response, factors, response
 from spanwise.runs import Run
+from spanwise.schema import event_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -231,11 +230,10 @@ def _lift_off_rows(run: Run) -> Iterator[Row]:
         yield [each.axle, *run.axles[each.axle - 1], *times]
 
 
-def _traffic(run: Run) -> dict[str, object]:
+def _traffic(run: Run) -> dict[str, Any]:
     """The tables of the vehicles: one alone, or several."""
-    if is_alone(run.passages):
-        return {"vehicle": table_of(run.truck)}
-    return {"traffic": [passage_table(each) for each in run.passages]}
+    table = event_table(run.passages)
+    return {"traffic": table} if isinstance(table, list) else table
 
 
 def _vehicle(run: Run, vehicle: int) -> dict[str, object]:

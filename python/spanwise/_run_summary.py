@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from spanwise._shown import warned
 from spanwise._table import Block, Table, html, listed, text
-from spanwise._traffictable import is_alone
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
 from spanwise.layout import Support
 from spanwise.quantities import Response, Sense
 from spanwise.runs import Run
-from spanwise.traffic import Passage, plain_drive
+from spanwise.traffic import Passage, is_alone, plain_drive
 
 Array: TypeAlias = NDArray[np.float64]
 

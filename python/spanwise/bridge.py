@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -32,6 +32,7 @@ from spanwise.layout import (
     Support,
     along,
     along_argument,
+    support,
     support_argument,
 )
 from spanwise.layout import (
@@ -214,7 +215,8 @@ class Bridge:
         else:
             if ends is not None:
                 raise ValueError("ends: used with spans only; supports says how the ends are held")
-            total, placed = number("length", length), supports_of("supports", supports)
+            total = number("length", length)
+            placed = [*map(astuple, supports_of("supports", supports))]
         self._core = _core.Bridge(
             length=total,
             supports=placed,
@@ -293,10 +295,10 @@ class Bridge:
         ----------
         .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973), section 2.3.
         """
-        at = numbers("stations", stations)
+        at, held = numbers("stations", stations), supports_of("supports", supports)
         given: dict[str, Any] = {
             "length": number("length", length),
-            "supports": supports_of("supports", supports),
+            "supports": [*map(astuple, held)],
             "stations": at,
             "masses": numbers("masses", masses),
             "redundants": [
@@ -309,10 +311,7 @@ class Bridge:
         }
         arguments: dict[str, Any] = {
             **given,
-            "supports": [
-                support_argument(Support(at=x, vertical=k, rotation=c))
-                for x, k, c in given["supports"]
-            ],
+            "supports": [*map(support_argument, held)],
             "redundants": [
                 support_argument(Support(at=x, vertical=k)) if np.isfinite(k) else x
                 for x, k in given["redundants"]
@@ -392,11 +391,12 @@ class Bridge:
             If the modes explain very little of the lines of deflection, as with frequencies in
             rad/s.
         """
+        held = supports_of("supports", supports)
         given: dict[str, Any] = {
             "path": numbers("path", path),
             "frequencies": numbers("frequencies", frequencies),
             "sections": numbers("sections", sections),
-            "supports": supports_of("supports", supports),
+            "supports": [*map(astuple, held)],
             "masses": None if masses is None else numbers("masses", masses),
         }
         both = _bridge_arrays.sides("shapes", shapes)
@@ -419,11 +419,9 @@ class Bridge:
             "influence_slopes": influence_slopes,
             "modal": modal,
         }
-        held = [
-            support_argument(Support(at=x, vertical=k, rotation=c)) for x, k, c in given["supports"]
-        ]
         plain = {key: _bridge_arrays.plain(value) for key, value in arrays.items()}
-        return cls._of(core, {"from_modes": {**given, "supports": held, **plain}})
+        arguments = {**given, "supports": [*map(support_argument, held)], **plain}
+        return cls._of(core, {"from_modes": arguments})
 
     @classmethod
     def _of(cls, core: _core.Bridge, arguments: dict[str, Any]) -> Bridge:
@@ -765,10 +763,11 @@ def _redundant(i: int, value: object) -> tuple[float, float]:
     key = f"redundants[{i}]"
     if not isinstance(value, Support | Mapping):
         return number(key, value), np.inf
-    (x, vertical, rotation), *_ = supports_of("redundants", [value])
-    if rotation != 0.0:
-        raise ValueError(f"{key} rotation = {rotation:g}: must be 0; only the deflection is known")
-    return x, vertical
+    one = support(key, value)
+    if one.rotation != 0.0:
+        said = "must be 0; only the deflection is known"
+        raise ValueError(f"{key} rotation = {one.rotation:g}: {said}")
+    return one.at, one.vertical
 
 
 def _left(side: object) -> bool:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import MISSING, fields
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator
+from typing import Final
 
-from spanwise._checks import shown
-from spanwise._keys import suggestion
+from spanwise._checks import choice
 from spanwise._table import Table, listed
-from spanwise.vehicle import Vehicle
+from spanwise._toml import toml, toml_value
+from spanwise.schema import vehicle_table
 from spanwise.vehicles import PRESETS, AnyVehicle, Preset
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 RECALLED: Final = "* recalled, not read at the source: check before relying on it"
 
@@ -44,29 +40,14 @@ def listing() -> str:
 
 def detail(name: str) -> str:
     """A preset with its axle loads and frequencies, and as the table of a case file."""
-    if name not in PRESETS:
-        hint = suggestion(name, PRESETS)
-        raise ValueError(f"preset = {shown(name)}: must be one of {', '.join(PRESETS)}{hint}")
-    preset = PRESETS[name]
+    preset = PRESETS[choice("preset", name, PRESETS)]
     vehicle = preset()
     return "\n".join([*_description(name, preset, vehicle), "", as_toml(vehicle)])
 
 
 def as_toml(vehicle: AnyVehicle) -> str:
     """The vehicle as the table ``[vehicle]`` of a case file; what has its default is left out."""
-    if not isinstance(vehicle, Vehicle):
-        return "\n".join(["[vehicle]", *_keys(vehicle)])
-    if not vehicle.bodies:
-        lines = ["[vehicle]", *_keys(vehicle)]
-        return "\n".join([*lines, *_tables("vehicle.axles", vehicle.axles)])
-    lines = []
-    for body in vehicle.bodies:
-        lines += ["", "[[vehicle.bodies]]", *_keys(body)]
-        lines += _tables("vehicle.bodies.axles", body.axles)
-        if body.hinge is not None:
-            lines += ["", "[vehicle.bodies.hinge]", *_keys(body.hinge)]
-        lines += _tables("vehicle.bodies.springs", body.springs)
-    return "\n".join(lines[1:])
+    return toml({"vehicle": vehicle_table(vehicle, defaults=False)})
 
 
 def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str]:
@@ -75,7 +56,7 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     if preset.recalled:
         yield f"          {RECALLED.removeprefix('* ')}"
     if preset.options:
-        options = (f"{key} = {_value(default)}" for key, default in preset.options.items())
+        options = (f"{key} = {toml_value(default)}" for key, default in preset.options.items())
         yield f"options   {', '.join(options)}"
     yield f"total     {vehicle._total}"
     loads = vehicle.static_loads() / 1e3
@@ -84,27 +65,3 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     if ground := vehicle._frequencies_in_words:
         yield f"coords    {', '.join(vehicle.coordinates)}"
         yield "on ground " + "\n          ".join(ground)
-
-
-def _tables(name: str, values: Iterable[DataclassInstance]) -> Iterator[str]:
-    for each in values:
-        yield from ("", f"[[{name}]]", *_keys(each))
-
-
-def _keys(of: DataclassInstance) -> Iterator[str]:
-    """Fields that are numbers or lists of them, and not the default."""
-    for each in fields(of):
-        value = getattr(of, each.name)
-        if each.default is not MISSING and value == each.default:
-            continue
-        text = _value(value)
-        if text is not None:
-            yield f"{each.name} = {text}"
-
-
-def _value(value: object) -> str | None:
-    if isinstance(value, int | float):
-        return repr(value)
-    if isinstance(value, tuple) and all(isinstance(each, float) for each in value):
-        return f"[{', '.join(map(repr, value))}]"
-    return None

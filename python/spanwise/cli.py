@@ -18,10 +18,10 @@ from spanwise._keys import suggestion
 from spanwise._run_files import csv_files, json_text
 from spanwise._signals import Terminated, terminable
 from spanwise._streams import say, tell
-from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
 from spanwise.roads import CLASSES, ISO8608, Smooth
+from spanwise.roads.random import is_random, reseeded
 
 #: Where a case says for an ensemble what options of a single crossing say in its place.
 IN_CASE: Final = {

@@ -13,7 +13,7 @@ from spanwise._checks import count, shown
 from spanwise._conditions import Recovery
 from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
 from spanwise._keys import suggesting
-from spanwise._plan_of_arguments import plan_of
+from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._progress import Bar
 from spanwise._rows import Rows
 from spanwise._warnings import PlausibilityWarning, warn
@@ -173,9 +173,7 @@ def ensemble(
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
-    given = {**locals()}  # all arguments by name
-    del given["threads"], given["progress"]
-    plan, speeds = plan_of(**given)
+    plan, speeds = plan_of(bridge, vehicle, Asked.of(locals()))
     conditions, events = plan.conditions, plan.events
     for remark in plan.idle():
         warn(remark)

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
 from spanwise import _core
 from spanwise._checks import numbers, shown
 from spanwise._wheels import Wheels
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

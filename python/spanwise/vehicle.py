@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from spanwise import _core
 from spanwise._checks import count, number, shown
 from spanwise._value import Brief
 from spanwise._wheels import Array, Wheels
-
-if TYPE_CHECKING:
-    pass
 
 T = TypeVar("T")
 

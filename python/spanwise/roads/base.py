@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
 from spanwise._door import view
+from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads import roughness
@@ -127,14 +128,7 @@ class Road(Brief):
 
         What is None is left out.
         """
-        table: dict[str, Any] = {"kind": self.kind}
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if isinstance(value, np.ndarray):
-                value = value.tolist()
-            if value is not None:
-                table[each.name] = list(value) if isinstance(value, tuple) else value
-        return table
+        return table_of(self)
 
     @property
     def surface(self) -> Road:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Final
 from spanwise import _core
 from spanwise._checks import choice, count, number, numbers, positive, shown
 from spanwise.roads._doubts import doubts_of_roughness
-from spanwise.roads.base import CONTACT_PATCH, Road
+from spanwise.roads.base import CONTACT_PATCH, Road, Sum
 from spanwise.roads.roughness import CLASSES
 
 #: IRI of a random road of waviness 2 over the square root of its G_d(n0) in 1e-6 m3 [m/km].
@@ -154,6 +154,20 @@ class ISO8608(Road):
             return table
         del table["G"]
         return {"kind": table.pop("kind"), "class": letter, **table}
+
+
+def is_random(road: Road) -> bool:
+    """Whether a seed makes a difference."""
+    return isinstance(road, ISO8608) or (isinstance(road, Sum) and any(map(is_random, road.parts)))
+
+
+def reseeded(road: Road, seed: int) -> Road:
+    """The road with another seed in all its random parts."""
+    if isinstance(road, ISO8608):
+        return replace(road, seed=seed)
+    if isinstance(road, Sum):
+        return Sum(tuple(reseeded(part, seed) for part in road.parts))
+    return road
 
 
 def bridge_study(condition: str, **options: Any) -> ISO8608:
