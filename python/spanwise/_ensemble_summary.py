@@ -16,7 +16,7 @@ from spanwise.damping import in_words
 from spanwise.ensembles import Ensemble
 from spanwise.extremes import ROUNDING, SampleExtremes, differ, largest_of_each, quotients
 from spanwise.quantities import Response, factors
-from spanwise.roads import ISO8608, Road, Sum
+from spanwise.roads import ISO8608, Road
 from spanwise.traffic import Passage, plain_drive
 
 Array: TypeAlias = NDArray[np.float64]
@@ -158,8 +158,7 @@ def _own_roads(event: Event) -> Iterator[str]:
 
 
 def _road(shared: Road, own: ISO8608 | None) -> str:
-    parts = shared.parts if isinstance(shared, Sum) else (shared,)
-    words = [each.kind for each in parts if not each.is_smooth]
+    words = [each.kind for each in shared._summands if not each.is_smooth]
     if own is not None:
         letter = f" class {own.road_class}" if own.road_class else f" G_d(n0) {own.G:.4g} m3"
         words.append(f"{own.kind}{letter}, drawn anew for each sample")

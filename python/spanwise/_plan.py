@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._conditions import Conditions
-from spanwise._events import Event, Speeds, core_passage, is_simple
+from spanwise._events import Event, Speeds, is_simple
 from spanwise._plausible import doubts
 from spanwise._rows import Rows
 from spanwise._value import Value
 from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
-from spanwise.crossing import cross
+from spanwise.crossing import core_passage, cross
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.runs import Run
@@ -111,7 +111,7 @@ class Plan(Value):
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
         varied = self.varies_loads
         loads = _core.static_loads(
-            [[core_passage(each, own_speed=True) for each in event] for event in self.events],
+            [[*map(core_passage, event)] for event in self.events],
             self.kinds if varied else self.kinds[:1],
             self.samples if varied else 1,
             [each.core for each in self.factors] if varied else [],
@@ -135,7 +135,7 @@ class Plan(Value):
         if all(each.name.startswith("bridge_") for each in self.factors):
             return [each.vehicle for each in event]
         varied = _core.varied(
-            [core_passage(each, own_speed=True) for each in event],
+            [*map(core_passage, event)],
             [each.of(sample).core for each in self.factors],
         )
         return [_scaled(one.vehicle, core) for one, core in zip(event, varied, strict=True)]

@@ -166,7 +166,7 @@ def cross(
     conditions = Conditions.of(bridge, asked, uneven=uneven)
     core = _core.cross(
         bridge._core,
-        [_core_passage(each, speed, driven, surface) for each in passages],
+        [core_passage(each, speed, driven, surface) for each in passages],
         **conditions.core,
     )
     settings: dict[str, object] = {
@@ -249,16 +249,20 @@ def check_speed(events: Sequence[tuple[Passage, ...]], speed: float | None, driv
         raise ValueError(f"speed = {speed:g}: not used with speeds in time")
 
 
-def _core_passage(
-    passage: Passage, speed: float | None, drive: Drive, road: Road
+def core_passage(
+    passage: Passage,
+    speed: float | None = None,
+    drive: Drive | None = None,
+    road: Road | None = None,
 ) -> _core._Passage:
-    own = passage.speed if passage.speed is not None else speed
+    """As the core takes it, with what all have in common where it has none of its own."""
+    drive, road = passage.drive or drive, passage.road or road
     return (
         passage.vehicle._core,
-        own,
-        core_drive(passage.drive or drive),
+        speed if passage.speed is None else passage.speed,
+        None if drive is None else core_drive(drive),
         passage.direction,
         passage.entry,
         passage.lane_number,
-        (passage.road or road)._core,
+        None if road is None else road._core,
     )

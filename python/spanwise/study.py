@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TypeAlias
 
 from numpy.typing import ArrayLike
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 from spanwise import _core
 from spanwise._checks import count, shown
 from spanwise._conditions import Recovery
-from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
+from spanwise._events import core_road, is_simple, speeds_by_kind
 from spanwise._keys import suggesting
 from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._progress import Bar
@@ -19,6 +20,7 @@ from spanwise._rows import Rows
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
+from spanwise.crossing import core_passage
 from spanwise.damping import Damping
 from spanwise.ensembles import Ensemble
 from spanwise.quantities import RESPONSES, telling
@@ -182,7 +184,9 @@ def ensemble(
     simple = all(is_simple(event, plan.drive) for event in events)
     column = speeds
     if simple:
+        # The speeds of passages stand among those of the samples.
         column = speeds_by_kind(speeds, events, plan.kinds, plan.samples)
+        events = tuple((replace(each, speed=None) if each.speed else each,) for (each,) in events)
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
     if progress is True:
@@ -192,7 +196,7 @@ def ensemble(
     try:
         core = _core.ensemble(
             bridge._core,
-            [[core_passage(each, own_speed=not simple) for each in event] for event in events],
+            [[*map(core_passage, event)] for event in events],
             drive=core_drive(plan.drive),
             road=plan.road._core,
             own_road=core_road(plan.own, plan.seed),

@@ -131,6 +131,11 @@ class Road(Brief):
         return table_of(self)
 
     @property
+    def _summands(self) -> list[Road]:
+        """The roads that it is the sum of, none of them a sum; or itself."""
+        return [self]
+
+    @property
     def surface(self) -> Road:
         """The same road without contact patch."""
         if getattr(self, "contact_patch", 0.0) == 0.0:
@@ -391,6 +396,10 @@ class Sum(Road):
             found = part.arguments
             tables += found if isinstance(found, list) else [found]
         return tables
+
+    @property
+    def _summands(self) -> list[Road]:
+        return [each for part in self.parts for each in part._summands]
 
     def _times(self, factor: float) -> Road:
         return total(part * factor for part in self.parts)
