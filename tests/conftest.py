@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
-from spanwise.samples import FACTORS
+from spanwise.quantities import factors
 
 Same: TypeAlias = Callable[[sw.Ensemble, int, sw.Run], None]
 
@@ -27,7 +27,7 @@ def last_on(run: sw.Run) -> int:
 def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
     """All that both give is equal to the bit, or differs by rounding where sums are made anew."""
     for name in (*ensemble.quantities, "axle_loads"):
-        of_all, alone = ensemble.envelope(name), run.envelope(name)  # type: ignore[arg-type]
+        of_all, alone = ensemble.envelope(name), run.envelope(name)
         axles = len(alone.x)
         for side in ("max", "min"):
             extremes, at_rest = getattr(alone, side), getattr(alone, f"static_{side}")
@@ -39,15 +39,15 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
             own = static[sample if len(static) > 1 else 0]
             assert_array_equal(own[:axles], at_rest.value, name)
             assert np.isnan(getattr(of_all, side)[sample, axles:]).all()
-    for factor, (name, _) in FACTORS.items():
-        if ensemble._looks_at(name):
+    for factor, (of, _) in factors().items():
+        if of in ensemble.responses:
             expected = getattr(run.impact_factors, factor)
             found = ensemble.impact_factors[factor][sample, : len(expected)]
             assert_array_equal(found, expected, factor)
     axles = len(run.static_axle_loads)
-    assert_array_equal(ensemble.off_road.count[sample, :axles], run.off_road.count)
-    off = ensemble.off_road.total[sample, :axles]
-    np.testing.assert_allclose(off, run.off_road.total, rtol=1e-9, atol=1e-12)
+    assert_array_equal(ensemble.contact_loss.count[sample, :axles], run.contact_loss.count)
+    off = ensemble.contact_loss.total[sample, :axles]
+    np.testing.assert_allclose(off, run.contact_loss.total, rtol=1e-9, atol=1e-12)
     accelerations = ensemble.body_accelerations.max[sample]
     bodies = [body for vehicle in run.vehicles for body in vehicle.bodies]
     until = slice(None, last_on(run) + 1)
@@ -64,11 +64,13 @@ def check_same(ensemble: sw.Ensemble, sample: int, run: sw.Run) -> None:
         there, own = slice(first, last + 1), slice(axle, axle + x.shape[1])
         axle += x.shape[1]
         coefficients = np.sqrt((deviations[there, own] ** 2).mean(axis=0))
-        found = run.load_coefficients[own]
+        found = run.dynamic_load_coefficients[own]
         np.testing.assert_allclose(found, coefficients, rtol=1e-9, atol=1e-12)
         for body in vehicle.bodies:
             of_bodies.append(np.sqrt((body.heave.acceleration[there] ** 2).mean()))
-    assert_array_equal(ensemble.load_coefficients[sample, :axles], run.load_coefficients)
+    assert_array_equal(
+        ensemble.dynamic_load_coefficients[sample, :axles], run.dynamic_load_coefficients
+    )
     rms = ensemble.body_accelerations.rms[sample, : len(of_bodies)]
     np.testing.assert_allclose(rms, of_bodies, rtol=1e-8, atol=1e-14)
 

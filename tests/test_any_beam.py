@@ -12,7 +12,6 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import spanwise as sw
-from spanwise.summary import summary
 
 #: A few roundings, relative to the scale of the quantity.
 EXACT = 1e-11
@@ -59,10 +58,10 @@ def test_copies_and_reports_make_the_same_bridge() -> None:
     clamps = run.envelope("clamp_moments")
     assert_array_equal(clamps.x, bridge.clamps)
     assert run.clamp_moments.shape == (len(run.time), 4)
-    assert "elastic at 15 m (3e+08 N/m, 4e+08 N m/rad), clamped at 32 m, elastic" in summary(run)
-    assert "hinge at 24 m" in summary(run)
+    assert "elastic at 15 m (3e+08 N/m, 4e+08 N m/rad), clamped at 32 m, elastic" in run.summary()
+    assert "hinge at 24 m" in run.summary()
     # As it was given, not the slices of the taper.
-    assert "EI 2e+09, 4e+09, 1e+09 N m2 at 0, 15, 46 m; " in summary(run)
+    assert "EI 2e+09, 4e+09, 1e+09 N m2 at 0, 15, 46 m; " in run.summary()
 
 
 def test_case_file() -> None:

@@ -557,7 +557,7 @@ def test_influence_lines(quantity: Any, at: Any, x: Any, parts: tuple[str, ...])
 def test_results_that_do_not_exist() -> None:
     run = cross()
     with pytest.raises(ValueError, match="quantity = 'momentum': must be one of deflection"):
-        run.envelope("momentum")  # type: ignore[arg-type]
+        run.envelope("momentum")
     with pytest.raises(ValueError, match="ratio = 'max': must be one of extremes"):
         run.ratios("max")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="mask = 2: must be a fraction"):

@@ -230,8 +230,8 @@ def test_the_basic_bridge_is_the_simple_span_without_the_middle_support() -> Non
     bridge, span = two_spans(), simple(spans=[2.0 * L])
     x = np.linspace(0.0, 2.0 * L, 33)
     for quantity, scale in (("deflection", L**3 / EI), ("moment", L)):
-        basic = bridge.influence_line(quantity, 15.0, x, "basic")  # type: ignore[arg-type]
-        expected = span.influence_line(quantity, 15.0, x)  # type: ignore[arg-type]
+        basic = bridge.influence_line(quantity, 15.0, x, "basic")
+        expected = span.influence_line(quantity, 15.0, x)
         assert_allclose(basic, expected, atol=scale * EXACT)
 
 

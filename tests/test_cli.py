@@ -364,7 +364,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (CASE.replace("speed", "sped"), "did you mean 'speed'?"),
         (CASE + "x = [", "line 14: is not valid TOML: Invalid value: x = ["),
         (CASE.replace("modes = 3", "modes = 9"), "modes = 9: must be 1 to 6"),
-        (CASE.replace("traction", "traktion"), 'drive = "constant-traktion"'),
+        (CASE.replace("traction", "traktion"), "drive = 'constant-traktion'"),
     ],
 )
 def test_a_bad_case(

@@ -14,7 +14,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
-from spanwise._ensemblefile import as_dict, npz_writer
+from spanwise._ensemble_files import as_dict, npz_writer
 from spanwise.cli import main
 
 BRIDGE = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=5)

@@ -34,7 +34,7 @@ def check_alike(one: sw.Run, other: sw.Run) -> None:
     pairs = [(getattr(one, name), getattr(other, name)) for name in ("deflection", "moment")]
     pairs += [(one.shear, other.shear), (one.axle_loads, other.axle_loads)]
     for mine, its in zip(one.vehicles, other.vehicles, strict=True):
-        names = ("elevations", "suspension_shortenings", "friction", "speed")
+        names = ("elevations", "suspension_travel", "friction", "speed")
         pairs += [(getattr(mine, name), getattr(its, name)) for name in names]
         pairs += [
             (a.heave.displacement, b.heave.displacement)
@@ -270,7 +270,7 @@ def test_more_axles_share_the_weight_as_springs(friction: float, mass: float) ->
     assert_allclose(run.axle_loads[0] - run.static_axle_loads, expected, rtol=1e-8, atol=1e-6)
     assert run.vehicle.heave[0] == pytest.approx(q[0], rel=1e-9)
     # The spring alone carries it; friction is what it was.
-    assert_allclose(run.vehicle.suspension_shortenings[0], expected / spring, rtol=1e-7, atol=1e-12)
+    assert_allclose(run.vehicle.suspension_travel[0], expected / spring, rtol=1e-7, atol=1e-12)
     assert_allclose(run.vehicle.friction[0], 0.4 * friction)
     # Nothing happens at first: not by a start, only by the road.
     assert abs(run.vehicle.heave_acceleration[0]) < 1e-9

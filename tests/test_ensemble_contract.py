@@ -76,7 +76,7 @@ def test_results_are_not_to_be_written_to() -> None:
         found.envelope("moment").max_time,
         found.envelope("shear").min,
         found.digests,
-        found.load_coefficients,
+        found.dynamic_load_coefficients,
         found.sections,
     ):
         with pytest.raises(ValueError, match="read-only"):
@@ -233,7 +233,7 @@ def test_failures_are_marked_and_leave_the_others() -> None:
         found.envelope("moment").max_time,
         found.envelope("shear").min_position,
         found.envelope("axle_loads").max,
-        found.load_coefficients,
+        found.dynamic_load_coefficients,
         found.impact_factors.sagging,
         found.impact_factors.shear,
     ):

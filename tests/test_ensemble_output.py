@@ -15,7 +15,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
-from spanwise._ensemblefile import as_dict
+from spanwise._ensemble_files import as_dict
 from spanwise.cli import main
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
@@ -98,7 +98,7 @@ def test_archive(found: sw.Ensemble, tmp_path: Path) -> None:
     with np.load(path) as archive:
         for name in ("sections", "supports", "frequencies"):
             assert_array_equal(archive[name], getattr(found, name))
-        assert_array_equal(archive["lift_offs"], found.off_road.count)
+        assert_array_equal(archive["lift_offs"], found.contact_loss.count)
         assert f"damping {archive['damping']}" in found.summary()
         assert_array_equal(archive["moment_max"], found.envelope("moment").max)
         assert_array_equal(archive["shear_left_min_time"], found.envelope("shear_left").min_time)
@@ -163,11 +163,11 @@ def test_plain_values() -> None:
 
 @pytest.mark.parametrize("quantity", ["deflection", "sagging", "hogging", "shear", "reactions"])
 def test_figures_of_impact_factors(found: sw.Ensemble, quantity: str) -> None:
-    figure = found.plot.impact_factors(quantity)  # type: ignore[arg-type]
+    figure = found.plot.impact_factors(quantity)
     (ax,) = figure.axes
     assert "dynamic" in ax.get_ylabel()
     if quantity not in ("reactions",):
-        values = found.impact_factors[quantity]  # type: ignore[index]
+        values = found.impact_factors[quantity]
         drawn = next(line for line in ax.lines if line.get_label() == "median")
         there = ~np.isnan(values).all(axis=0)
         expected = np.full(values.shape[1], np.nan)
@@ -179,7 +179,7 @@ def test_figures_of_impact_factors(found: sw.Ensemble, quantity: str) -> None:
 
 @pytest.mark.parametrize("quantity", ["deflection", "moment", "shear", "reactions"])
 def test_figures_of_envelopes(found: sw.Ensemble, quantity: str) -> None:
-    figure = found.plot.envelope(quantity)  # type: ignore[arg-type]
+    figure = found.plot.envelope(quantity)
     figure.canvas.draw()
     legend = figure.axes[0].get_legend()
     assert legend is not None
@@ -248,7 +248,7 @@ def test_command_on_the_same_road(case: Path, capsys: pytest.CaptureFixture[str]
         (["--samples", "3", "--threads", "0"], "threads = 0: must be 1 or more"),
         (["--samples", "3", "--out", "here.txt"], "--out here.txt: must end in .npz"),
         (["--samples", "3", "--out", "missing/here.npz"], "missing: no such folder"),
-        ([], "the following arguments are required: --samples"),
+        ([], "--samples: missing; give it, or samples in [ensemble] of"),
     ],
 )
 def test_command_refuses(

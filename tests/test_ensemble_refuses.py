@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import spanwise as sw
-from spanwise._ensemblefile import settings
+from spanwise._ensemble_files import settings
 from spanwise.cli import main
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)

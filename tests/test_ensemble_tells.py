@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import spanwise as sw
-from spanwise._ensemblesummary import governing
+from spanwise.extremes import governing
 
 BRIDGE = sw.Bridge(spans=[18.288, 18.288], EI=1.94148e9, mass=6037.7, stations_per_span=3)
 SIMPLE = sw.Bridge(spans=[20.0], EI=5e9, mass=8e3)

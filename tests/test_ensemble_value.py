@@ -101,8 +101,8 @@ def check_equal(one: sw.Ensemble, other: sw.Ensemble) -> None:
             a, b = (getattr(each.envelope(name), f"static_{side}") for each in (one, other))
             assert_array_equal(np.broadcast_to(a, b.shape), b)
     assert_array_equal(one.static_axle_loads, other.static_axle_loads)
-    assert_array_equal(one.load_coefficients, other.load_coefficients)
-    assert_array_equal(one.off_road.count, other.off_road.count)
+    assert_array_equal(one.dynamic_load_coefficients, other.dynamic_load_coefficients)
+    assert_array_equal(one.contact_loss.count, other.contact_loss.count)
     assert one.body_accelerations == other.body_accelerations
     for row in (0, one.samples - 1):
         assert one.run(row) == other.run(row)
@@ -113,7 +113,7 @@ def test_copies(found: sw.Ensemble) -> None:
     for each in (pickle.loads(pickle.dumps(found)), copy.deepcopy(found)):
         check_equal(each, found)
     assert pickle.loads(pickle.dumps(found.envelope("moment"))) == found.envelope("moment")
-    for each in (found.body_accelerations, found.off_road, found.impact_factors):
+    for each in (found.body_accelerations, found.contact_loss, found.impact_factors):
         for another in (copy.deepcopy(each), copy.copy(each), pickle.loads(pickle.dumps(each))):
             assert another == each
         assert each != "something else"
@@ -375,7 +375,7 @@ def test_a_row_a_sample() -> None:
     assert_array_equal(table["moment_min"], found.envelope("moment").min.min(axis=1))
     at = found.envelope("moment").x.tolist().index(table.attrs["governing"]["sagging"])
     assert_array_equal(table["impact_factor_sagging"], found.impact_factors.sagging[:, at])
-    assert_array_equal(table["load_coefficient_1"], found.load_coefficients[:, 0])
+    assert_array_equal(table["load_coefficient_1"], found.dynamic_load_coefficients[:, 0])
     assert_array_equal(table["body_acceleration_rms_1"], found.body_accelerations.rms[:, 0])
     assert not table["failed"].any()
     several = whole("one by one").to_pandas()
@@ -423,7 +423,7 @@ def test_kinds_with_fewer_axles_that_leave_the_road() -> None:
     table, loads = found.to_pandas(), found.envelope("axle_loads")
     assert np.isnan(loads.max[:, 1]).tolist() == [False, True, False, True]
     assert_array_equal(table["axle_loads_max"], [*map(max, [loads.max[0], loads.max[1, :1]] * 2)])
-    off = found.off_road
+    off = found.contact_loss
     assert (off.count[:, 0] > 0).any()
     assert_array_equal(table["lift_offs_1"], off.count[:, 0])
     assert_array_equal(table["time_off_road_1"], off.total[:, 0])
@@ -445,7 +445,7 @@ def test_places_that_are_not_there() -> None:
 
 @pytest.mark.parametrize("by", ["sample", "section"])
 def test_tables_in_files(by: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("spanwise._frames.ROWS", 5)
+    monkeypatch.setattr("spanwise._ensemble_tables.ROWS", 5)
     found = whole("varied")
     table = found.to_pandas(by)
     found.to_parquet(tmp_path / "out.parquet", by)

@@ -85,7 +85,7 @@ def by_hand(vehicle: sw.Vehicle, name: str, factor: float) -> sw.Vehicle:
 
 def check_close(found: sw.Ensemble, sample: int, run: sw.Run, tolerance: float = 1e-9) -> None:
     for name in (*found.quantities, "axle_loads"):
-        envelope = run.envelope(name)  # type: ignore[arg-type]
+        envelope = run.envelope(name)
         for side in ("max", "min", "static_max", "static_min"):
             values = np.atleast_2d(getattr(found.envelope(name), side))
             own = values[sample if len(values) > 1 else 0]

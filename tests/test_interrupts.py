@@ -85,7 +85,7 @@ LONG = {
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
         "found = sw.ensemble(b, TRUCK, samples=60000, speed=20.0, damping=0.02,"
         " factors={'body_mass': np.linspace(0.9, 1.1, 60000)}, quantities=['deflection'])",
-        "found._recipe.static_loads()",
+        "found._plan.static_loads()",
     ),
     "a varied train": (
         TRAIN + "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"

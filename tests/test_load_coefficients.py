@@ -35,12 +35,12 @@ def crossing(speed: float) -> sw.Run:
 @pytest.mark.parametrize("speed", [10.0, 20.0, 30.0])
 def test_about_the_static_load(speed: float) -> None:
     run = crossing(speed)
-    assert run.load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
+    assert run.dynamic_load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
     # The mean load of a short crossing is not the static one, and about it there is less.
     x = run.vehicle.axle_positions
     there = (x[:, 0] >= 0.0) & (x[:, -1] <= 20.0)
     about_the_mean = run.axle_loads[there].std(axis=0) / run.static_axle_loads
-    assert (run.load_coefficients > about_the_mean).any()
+    assert (run.dynamic_load_coefficients > about_the_mean).any()
 
 
 def test_several_vehicles_and_all_that_says_it(tmp_path: Path) -> None:
@@ -50,17 +50,19 @@ def test_several_vehicles_and_all_that_says_it(tmp_path: Path) -> None:
     ]
     road = sw.ISO8608("B", seed=1)
     run = sw.cross(BRIDGE, passages, road=road, approach=30.0, damping=0.02)
-    assert run.load_coefficients.shape == (4,)
-    assert run.load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
+    assert run.dynamic_load_coefficients.shape == (4,)
+    assert run.dynamic_load_coefficients == pytest.approx(by_hand(run), rel=1e-12)
     run.to_json(tmp_path / "run.json")
     told = json.loads((tmp_path / "run.json").read_text())["vehicles"]
-    assert [v for each in told for v in each["load_coefficients"]] == run.load_coefficients.tolist()
+    assert [
+        v for each in told for v in each["load_coefficients"]
+    ] == run.dynamic_load_coefficients.tolist()
     assert "from their static values" in run.summary()
     with pytest.raises(ValueError, match="read-only"):
-        run.load_coefficients[0] = 0.0
+        run.dynamic_load_coefficients[0] = 0.0
     given = {"road": road, "approach": 30.0, "damping": 0.02, "samples": 2}
     found = sw.ensemble(BRIDGE, passages, **given)  # type: ignore[arg-type]
-    assert_array_equal(found.load_coefficients[0], found.run(0).load_coefficients)
+    assert_array_equal(found.dynamic_load_coefficients[0], found.run(0).dynamic_load_coefficients)
 
 
 @pytest.mark.parametrize("entry", [4.0, 9.0])
@@ -73,16 +75,20 @@ def test_nobody_else_counts(entry: float, direction: Any) -> None:
     alone, both = (sw.cross(BRIDGE, e, **given) for e in (first, [first, other]))  # type: ignore[arg-type]
     # A vehicle alone takes steps that end with it: it meets the road at other instants.
     alike = 1e-2
-    assert both.load_coefficients == pytest.approx([*alone.load_coefficients, 0.0], rel=alike)
+    assert both.dynamic_load_coefficients == pytest.approx(
+        [*alone.dynamic_load_coefficients, 0.0], rel=alike
+    )
     one, two = (
         sw.ensemble(BRIDGE, [event], samples=2, **given)  # type: ignore[arg-type]
         for event in ([first], [first, other])
     )
     assert two.body_accelerations.rms == pytest.approx(one.body_accelerations.rms, rel=alike)
-    assert two.load_coefficients[:, :2] == pytest.approx(one.load_coefficients, rel=alike)
+    assert two.dynamic_load_coefficients[:, :2] == pytest.approx(
+        one.dynamic_load_coefficients, rel=alike
+    )
 
 
 def test_constant_forces_do_not_vary() -> None:
     run = sw.cross(BRIDGE, sw.vehicles.flm3(), speed=20.0)
-    assert_array_equal(run.load_coefficients, np.zeros(4))
+    assert_array_equal(run.dynamic_load_coefficients, np.zeros(4))
     assert "from their static values" not in run.summary()

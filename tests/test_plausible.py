@@ -14,7 +14,7 @@ import pytest
 
 import spanwise as sw
 from spanwise import _plausible
-from spanwise._ensemblefile import as_dict
+from spanwise._ensemble_files import as_dict
 from spanwise.cli import main
 
 EI, MASS = 4e9, 9e3

@@ -16,7 +16,7 @@ from numpy.testing import assert_array_equal
 
 import spanwise as sw
 from spanwise._files import write_files
-from spanwise.report import as_dict
+from spanwise._run_files import as_dict
 
 QUANTITIES = ["deflection", "moment", "shear", "reactions", "axle_loads"]
 
@@ -168,7 +168,7 @@ def test_vehicles_of_the_report() -> None:
     assert (first["final_speed"], second["final_speed"]) == (25.0, 15.0)
     assert first["stopped"] is None
     counts = first["off_road"]["count"] + second["off_road"]["count"]
-    assert counts == run.off_road.count.tolist()
+    assert counts == run.contact_loss.count.tolist()
     assert sum(counts) == len(run.to_dict()["lift_offs"]) > 0
 
 
@@ -285,7 +285,7 @@ def test_histories_of_several_vehicles(tmp_path: Path) -> None:
 def test_envelopes(tmp_path: Path, run: sw.Run) -> None:
     run.to_csv(tmp_path)
     for quantity in (*QUANTITIES, "clamp_moments"):
-        envelope = run.envelope(quantity)  # type: ignore[arg-type]
+        envelope = run.envelope(quantity)
         head, body = rows(tmp_path / f"envelope_{quantity}.csv")
         columns = dict(zip(head, numbers(body).T, strict=True))
         unit = "N m" if "moment" in quantity else "m" if quantity == "deflection" else "N"
@@ -346,7 +346,7 @@ def test_frame_of_shears_has_both_sides(run: sw.Run) -> None:
 
 def test_frame_of_nothing(run: sw.Run) -> None:
     with pytest.raises(ValueError, match="quantity = 'time': must be one of deflection, moment"):
-        run.to_pandas("time")  # type: ignore[arg-type]
+        run.to_pandas("time")
 
 
 def test_pandas_is_asked_for_by_name(run: sw.Run, monkeypatch: pytest.MonkeyPatch) -> None:

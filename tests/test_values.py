@@ -120,7 +120,7 @@ RESULTS: dict[str, Callable[[sw.Run], Any]] = {
     "Envelope": lambda run: run.envelope("moment"),
     "Extremes": lambda run: run.envelope("moment").max,
     "ImpactFactors": lambda run: run.impact_factors,
-    "OffRoad": lambda run: run.off_road,
+    "ContactLoss": lambda run: run.contact_loss,
     "VehicleMotion": lambda run: run.vehicle,
     "BodyMotion": lambda run: run.vehicle.bodies[0],
     "Motion": lambda run: run.vehicle.hops[0],
@@ -159,7 +159,7 @@ def test_results_are_values(run: sw.Run, name: str) -> None:
     assert value != "something else"
     if name not in ("Settlement", "Modes", "IsoClass", "IriSegments"):
         faster = sw.cross(run.bridge, run.passages, speed=26.0, damping=0.02, road=run.road)
-        assert RESULTS[name](faster) != value or name == "OffRoad"
+        assert RESULTS[name](faster) != value or name == "ContactLoss"
 
 
 @pytest.mark.parametrize("name", [*INPUTS, *RESULTS])
@@ -271,7 +271,7 @@ def test_what_travels_is_not_what_was_worked_out() -> None:
     before = len(pickle.dumps(run))
     assert run.moment.size > 0
     assert run.vehicle.travel.size > 0
-    assert run.off_road.count.size > 0
+    assert run.contact_loss.count.size > 0
     assert len(pickle.dumps(run)) == before
 
 

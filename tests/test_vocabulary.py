@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import spanwise as sw
+from spanwise._value import same
 
 BRIDGE = sw.Bridge(
     length=30.0,
@@ -52,7 +53,7 @@ def test_envelopes(quantity: Any) -> None:
         samples=2,
         speed=30.0,
         damping=0.0,
-        quantities=["clamp-moment", "moments"],  # type: ignore[list-item]
+        quantities=["clamp-moment", "moments"],
     )
     assert again.quantities == ("moment", "clamp_moments")
 
@@ -72,8 +73,10 @@ def test_impact_factors(factor: Any) -> None:
 
 
 def test_wheels_off_the_road() -> None:
-    assert_array_equal(MANY.off_road.count[2], RUN.off_road.count)
-    np.testing.assert_allclose(MANY.off_road.total[2], RUN.off_road.total, rtol=1e-9, atol=1e-12)
+    assert_array_equal(MANY.contact_loss.count[2], RUN.contact_loss.count)
+    np.testing.assert_allclose(
+        MANY.contact_loss.total[2], RUN.contact_loss.total, rtol=1e-9, atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("quantity", ["momentum", "moment max", 3, None])
@@ -108,8 +111,8 @@ def test_influence_lines(name: Any, as_given: Any) -> None:
         ("moment", 'envelope("moment")', lambda found: found.moment),
         ("shear_left", 'envelope("shear_left")', lambda found: found.shear_left),
         ("axle_loads", 'envelope("axle_loads")', lambda found: found.axle_loads),
-        ("lift_offs", "off_road.count", lambda found: found.lift_offs),
-        ("time_off_road", "off_road.total", lambda found: found.time_off_road),
+        ("lift_offs", "contact_loss.count", lambda found: found.lift_offs),
+        ("time_off_road", "contact_loss.total", lambda found: found.time_off_road),
         ("impact_factors", "impact_factors.sagging", lambda found: found.impact_factors("sagging")),
         (
             "impact_factors",
@@ -129,6 +132,29 @@ def test_old_names(old: str, new: str, use: Any) -> None:
         assert_array_equal(found, expected)
     else:
         assert found is expected
+
+
+@pytest.mark.parametrize(
+    ("of", "old", "new"),
+    [
+        (MANY, "off_road", "contact_loss"),
+        (MANY, "load_coefficients", "dynamic_load_coefficients"),
+        (RUN, "off_road", "contact_loss"),
+        (RUN, "load_coefficients", "dynamic_load_coefficients"),
+        (RUN.vehicle, "suspension_shortenings", "suspension_travel"),
+    ],
+)
+def test_names_of_the_field(of: Any, old: str, new: str) -> None:
+    name = type(of).__name__
+    with pytest.warns(DeprecationWarning, match=rf"{name}\.{old} is now {name}\.{new};") as told:
+        found = getattr(of, old)
+    assert told[0].filename == __file__
+    assert same(found, getattr(of, new))
+
+
+def test_where_the_function_was() -> None:
+    with pytest.warns(DeprecationWarning, match=r"is now spanwise\.study\.ensemble"):
+        assert getattr(sw.ensembles, "ensemble") is sw.ensemble  # noqa: B009
 
 
 def test_what_there_never_was() -> None:

@@ -9,11 +9,11 @@ from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case, CaseError
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
-from spanwise.ensembles import ensemble
+from spanwise.ensembles import Ensemble
+from spanwise.extremes import Envelope, Extremes
+from spanwise.impact_factors import ImpactFactors
 from spanwise.layout import Along, Support
 from spanwise.motions import LiftOff
-from spanwise.population import Ensemble
-from spanwise.responses import Envelope, Extremes
 from spanwise.roads import (
     ISO8608,
     Bump,
@@ -27,7 +27,7 @@ from spanwise.roads import (
 )
 from spanwise.runs import Run
 from spanwise.samples import Failure
-from spanwise.table import ImpactFactors
+from spanwise.study import ensemble
 from spanwise.traffic import Acceleration, Braking, Passage, Speeds, convoy
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sized
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from collections.abc import Set as AbstractSet
 from itertools import islice
 from numbers import Integral, Real
@@ -136,6 +136,14 @@ def choice(key: str, value: object, options: Iterable[str]) -> str:
         near = suggestion(value, allowed)
         raise ValueError(f"{key} = {shown(value)}: must be one of {', '.join(allowed)}{near}")
     return str(value)
+
+
+def one_of(key: str, value: object, options: Sequence[str]) -> str:
+    """One of a few words."""
+    if not isinstance(value, str) or value not in options:
+        allowed = f"{', '.join(options[:-1])} or {options[-1]}"
+        raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
+    return value
 
 
 def named(key: str, value: Name, options: Iterable[str]) -> Name:

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from spanwise._checks import is_list, items, shown
 from spanwise._events import Speeds
-from spanwise._recipe import Recipe
+from spanwise._plan import Plan
 from spanwise._rows import Rows
 from spanwise._value import same
 from spanwise._variation import Factors
-from spanwise.population import Ensemble
+from spanwise.ensembles import Ensemble
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -67,8 +67,8 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     parts: list[Ensemble] = [given[i] for i in order]
     if len(parts) == 1:
         return parts[0]
-    recipe = _joined([each._recipe for each in parts])
-    return Ensemble(recipe, Rows.joined([each._rows for each in parts]))
+    plan = _joined([each._plan for each in parts])
+    return Ensemble(plan, Rows.joined([each._rows for each in parts]))
 
 
 def _check_next(before: Ensemble, number: int, part: Ensemble, i: int) -> None:
@@ -89,7 +89,7 @@ def _check_next(before: Ensemble, number: int, part: Ensemble, i: int) -> None:
 
 def _check_alike(one: Ensemble, number: int, part: Ensemble, i: int) -> None:
     """Refuses a part that was asked something else, naming what."""
-    mine, others = one._recipe, part._recipe
+    mine, others = one._plan, part._plan
     for name, what in (("bridge", "bridge"), ("events", "vehicles"), ("quantities", "quantities")):
         if not same(getattr(mine, name), getattr(others, name)):
             raise ValueError(f"ensembles[{i}]: {what}: must be as in ensembles[{number}]")
@@ -100,9 +100,7 @@ def _check_alike(one: Ensemble, number: int, part: Ensemble, i: int) -> None:
                 f"ensembles[{i}]: {key} = {shown(theirs.get(key))}: must be as in "
                 f"ensembles[{number}], {shown(ours.get(key))}"
             )
-    widths = [
-        {each.name: each.values.shape[1] for each in recipe.factors} for recipe in (mine, others)
-    ]
+    widths = [{each.name: each.values.shape[1] for each in plan.factors} for plan in (mine, others)]
     if widths[0] != widths[1]:
         names = ", ".join(f"{name} ({width})" for name, width in widths[1].items()) or "none"
         raise ValueError(
@@ -113,14 +111,14 @@ def _check_alike(one: Ensemble, number: int, part: Ensemble, i: int) -> None:
         raise ValueError(f"ensembles[{i}]: is of another version than ensembles[{number}]")
 
 
-def _joined(recipes: Sequence[Recipe]) -> Recipe:
+def _joined(plans: Sequence[Plan]) -> Plan:
     """What one call for all samples would have been told."""
-    first = recipes[0]
-    counts = [each.samples for each in recipes]
-    speeds = _speeds([each.speeds for each in recipes], counts)
-    kinds = np.concatenate([each.kinds for each in recipes])
+    first = plans[0]
+    counts = [each.samples for each in plans]
+    speeds = _speeds([each.speeds for each in plans], counts)
+    kinds = np.concatenate([each.kinds for each in plans])
     factors = [
-        Factors(each.name, _column([recipe.factors[k].values for recipe in recipes], counts))
+        Factors(each.name, _column([plan.factors[k].values for plan in plans], counts))
         for k, each in enumerate(first.factors)
     ]
     samples = sum(counts)
@@ -146,15 +144,10 @@ def _speeds(parts: Sequence[Speeds], counts: Sequence[int]) -> Speeds:
     first = parts[0].given
     if not isinstance(first, np.ndarray) and all(same(each.given, first) for each in parts):
         return parts[0]
-    rows = [each.column.reshape(-1, _width(each, n)) for each, n in zip(parts, counts, strict=True)]
+    rows = [each.rows(n) for each, n in zip(parts, counts, strict=True)]
     column = _column(rows, counts)
     given = column[:, 0] if column.shape[1] == 1 else column
     return Speeds(given, np.ascontiguousarray(column).ravel())
-
-
-def _width(speeds: Speeds, samples: int) -> int:
-    """Speeds of a sample."""
-    return len(speeds.column) // samples if len(speeds.column) > 1 else 1
 
 
 def _column(parts: Sequence[Array], counts: Sequence[int]) -> Array:

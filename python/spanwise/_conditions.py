@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final, Literal, TypeAlias, get_args
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Final, Literal, Self, TypeAlias, get_args
 
-import numpy as np
-
-from spanwise._checks import count, flag, is_list, items, number, numbers, word
+from spanwise._checks import count, flag, number, numbers, one_of
 from spanwise._value import Value
 from spanwise._warnings import DampingWarning, warn
+from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
-from spanwise.damping import Damping, plain_damping, resolved
+from spanwise.damping import Damping, damping_of, plain_damping, resolved
+from spanwise.traffic import Drive, drive_of
 
 Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
 
@@ -29,16 +29,67 @@ UNDAMPED: Final = (
 )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How vehicles cross, as it is asked for and checked: what `cross` and `ensemble` share."""
+
+    modes: int | None = None
+    drive: Drive = "constant-speed"
+    damping: Damping | None = None
+    approach: float | None = None
+    ramp: float | None = None
+    tail: float | None = None
+    sections: Sequence[float] | None = None
+    recovery: Recovery = "force-summation"
+    step: float | None = None
+    beta: float = 1.0 / 6.0
+    gravity: float = GRAVITY
+    lift_off: bool = True
+    mask: float = 0.05
+
+    #: What checks and understands a value that is not a number.
+    checks: ClassVar[Mapping[str, Callable[[str, Any], object]]] = {
+        "modes": count,
+        "drive": lambda key, value: drive_of(value),
+        "damping": lambda key, value: damping_of(value),
+        "sections": numbers,
+        "recovery": lambda key, value: one_of(key, value, get_args(Recovery)),
+        "lift_off": flag,
+        "mask": lambda key, value: masked(value),
+    }
+
+    @classmethod
+    def of(cls, arguments: Mapping[str, Any]) -> Self:
+        """Of the arguments of a function by name, some of which may be none of these."""
+        names = [each.name for each in fields(cls)]
+        return cls(**{name: arguments[name] for name in names if name in arguments})
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if value is not None or each.default is not None:
+                check = self.checks.get(each.name, number)
+                object.__setattr__(self, each.name, check(each.name, value))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing(Settings):
+    """What `cross` is asked for, and `advance`, which ensembles take from ``[crossing]`` too."""
+
+    speed: float | None = None
+    advance: float | None = None
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Conditions(Value):
-    """How vehicles cross, all but their drive and speed.
+    """The settings with what is by default, for a bridge and a road.
 
     Attributes
     ----------
     core : dict
         As the core takes them.
     settings : dict
-        As a case file writes them; modes, step and sections are not among them.
+        As a case file writes them; modes, drive, step and sections are not among them.
     modes : int
         Number of modes.
     mask : float
@@ -51,58 +102,31 @@ class Conditions(Value):
     mask: float
 
     @classmethod
-    def of(
-        cls,
-        bridge: Bridge,
-        *,
-        uneven: bool,
-        modes: int | None,
-        damping: Damping | None,
-        approach: float | None,
-        ramp: float | None,
-        tail: float | None,
-        sections: Sequence[float] | None,
-        recovery: Recovery,
-        step: float | None,
-        beta: float,
-        gravity: float,
-        lift_off: bool,
-        mask: float,
-    ) -> Conditions:
-        """Arguments of `cross` of the same names; `uneven` tells whether any road is."""
+    def of(cls, bridge: Bridge, asked: Settings, *, uneven: bool) -> Conditions:
+        """Settings filled in; `uneven` tells whether any road is."""
+        approach, ramp = asked.approach, asked.ramp
         if approach is None:
             approach = APPROACH if uneven else 0.0
         if ramp is None:
-            ramp = min(RAMP, number("approach", approach)) if uneven else 0.0
-        modes = count("modes", bridge.default_modes() if modes is None else modes)
-        if damping is None:
+            ramp = min(RAMP, approach) if uneven else 0.0
+        modes = bridge.default_modes() if asked.modes is None else asked.modes
+        if asked.damping is None:
             warn(UNDAMPED, DampingWarning)
-            damping = 0.0
-        if not isinstance(damping, Mapping | np.ndarray) and is_list(damping):
-            damping = items("damping", damping)
+        damping = damping_of(0.0 if asked.damping is None else asked.damping)
         ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
-        beta, gravity, ramp = number("beta", beta), number("gravity", gravity), number("ramp", ramp)
-        approach, mask = number("approach", approach), masked(mask)
-        tail = None if tail is None else number("tail", tail)
-        common = {
-            "approach": approach,
-            "ramp": ramp,
-            "tail": tail,
-            "recovery": word("recovery", recovery, *get_args(Recovery)),
-            "beta": beta,
-            "gravity": gravity,
-            "lift_off": flag("lift_off", lift_off),
-        }
+        names = ("recovery", "beta", "gravity", "lift_off")
+        common = {"approach": approach, "ramp": ramp, "tail": asked.tail}
+        common |= {name: getattr(asked, name) for name in names}
         core = {
             **common,
             "modes": modes,
             "damping": ratios,
             "damping_matrix": matrix,
-            "step": None if step is None else number("step", step),
-            "sections": None if sections is None else numbers("sections", sections),
+            "step": asked.step,
+            "sections": asked.sections,
         }
-        settings = {"damping": plain_damping(damping), **common, "mask": mask}
-        return cls(core, settings, modes, mask)
+        settings = {"damping": plain_damping(damping), **common, "mask": asked.mask}
+        return cls(core, settings, modes, asked.mask)
 
 
 def masked(mask: object) -> float:

@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from spanwise._ensemblefile import as_dict, npz_writer
+from spanwise._ensemble_files import as_dict, npz_writer
 from spanwise._files import Content, check_targets, write_files
+from spanwise._plain import json_lines
 from spanwise.case import Case, CaseError
-from spanwise.report import json_lines
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
@@ -26,24 +26,24 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         description="Drive the vehicles of a case over its bridge many times, each time on a "
         "random road of its own if the case has one, and print percentiles of the largest "
         "responses and of the impact factors. Everything is computed before any file is written. "
-        "Speeds or factors that vary from crossing to crossing are given in Python, to "
-        "Case.ensemble.",
+        "Speeds or factors that vary from crossing to crossing are lists in [ensemble] of the "
+        "case, or are given in Python, to Case.ensemble.",
     )
     command.add_argument(
         "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
     )
     command.add_argument(
-        "--samples", type=int, required=True, metavar="N", help="number of crossings"
+        "--samples", type=int, metavar="N", help="number of crossings, not that of [ensemble]"
     )
     command.add_argument(
         "--seed",
         type=int,
-        default=0,
         metavar="N",
-        help="seed of the random roads, in place of that of [road]; 0 by default",
+        help="seed of the random roads, in place of that of [road]; by default as [ensemble] says, "
+        "or 0",
     )
     command.add_argument(
-        "--first", type=int, default=0, metavar="N", help="number of the first sample; 0 by default"
+        "--first", type=int, metavar="N", help="number of the first sample; by default likewise"
     )
     command.add_argument(
         "--same-road",
@@ -96,12 +96,10 @@ def run(options: argparse.Namespace) -> str:
     case = Case.read(options.case)
     named = [Path(each) for each in (options.json, options.out) if each not in (None, "-")]
     check_targets(named, case.files)
-    given = {
-        key: getattr(options, key)
-        for key in ("modes", "threads", "own_roads")
-        if getattr(options, key) is not None
-    }
-    given |= {key: getattr(options, key) for key in ("samples", "seed", "first")}
+    names = ("samples", "seed", "first", "own_roads", "modes", "threads")
+    given = {key: each for key in names if (each := getattr(options, key)) is not None}
+    if "samples" not in given and "samples" not in case.sampling:
+        raise ValueError(f"--samples: missing; give it, or samples in [ensemble] of {options.case}")
     with _errors(given):
         found = case.ensemble(**given, progress=True)
     text = found.summary() + "\n"

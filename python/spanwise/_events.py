@@ -9,15 +9,14 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise import _core
 from spanwise._checks import array, as_array, first_of, shown
-from spanwise._traffictable import is_random
 from spanwise._value import Value
 from spanwise._wheels import Wheels
 from spanwise.crossing import made_by, passages_of
-from spanwise.roads import ISO8608, Road, Sum
+from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
-from spanwise.traffic import Drive, Passage, core_drive
+from spanwise.roads.random import is_random
+from spanwise.traffic import Drive, Passage
 from spanwise.traffic import Speeds as SpeedsInTime
 
 Array: TypeAlias = NDArray[np.float64]
@@ -61,7 +60,7 @@ def own_road(road: Road, events: Sequence[Event], own_roads: bool) -> tuple[Road
     """What all samples share of a road, and what is drawn anew for each."""
     if not own_roads:
         return road, None
-    parts = [*_parts(road)]
+    parts = road._summands
     random = [part for part in parts if isinstance(part, ISO8608)]
     if len(random) > 1:
         raise ValueError(
@@ -79,13 +78,6 @@ def own_road(road: Road, events: Sequence[Event], own_roads: bool) -> tuple[Road
     if not random:
         return road, None
     return total(part for part in parts if not isinstance(part, ISO8608)), random[0]
-
-
-def _parts(road: Road) -> list[Road]:
-    """All that a road is the sum of."""
-    if isinstance(road, Sum):
-        return [each for part in road.parts for each in _parts(part)]
-    return [road]
 
 
 def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[np.uint32]:
@@ -125,6 +117,10 @@ class Speeds(Value):
 
     given: float | Array | None
     column: Array
+
+    def rows(self, samples: int) -> Array:
+        """Shape (sample, 1) or (sample, vehicle); one row where it is the same for all."""
+        return self.column.reshape(1 if len(self.column) == 1 else samples, -1)
 
     def of(self, sample: int, vehicle: int, samples: int) -> float:
         """Of a vehicle of a sample that has none of its own."""
@@ -239,19 +235,6 @@ def speeds_by_kind(
         return speeds
     brought = np.array([np.nan if each.speed is None else each.speed for (each,) in events])[kinds]
     return Speeds(speeds.given, np.where(np.isnan(brought), speeds.column, brought))
-
-
-def core_passage(passage: Passage, *, own_speed: bool) -> _core._Passage:
-    """As the core takes it; what is missing is that of the ensemble."""
-    return (
-        passage.vehicle._core,
-        passage.speed if own_speed else None,
-        None if passage.drive is None else core_drive(passage.drive),
-        passage.direction,
-        passage.entry,
-        passage.lane_number,
-        None if passage.road is None else passage.road._core,
-    )
 
 
 def core_road(road: ISO8608 | None, seed: int) -> tuple[Any, ...] | None:

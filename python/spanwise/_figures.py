@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from io import BytesIO
 
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise.runs import Run
 
 
@@ -16,9 +16,11 @@ def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:
     numbers = range(1, len(run.passages) + 1)
     figures = [
         ("model", plot.model()),
-        ("deflection", plot.envelope("deflection")),
-        ("moment", plot.envelope("moment")),
-        ("shear", plot.envelope("shear")),
+        *(
+            (each.name, plot.envelope(each.name))
+            for each in run.responses
+            if each.axis == "section"
+        ),
         ("impact_factors", plot.impact_factors()),
         *((f"vehicle_{k}" if len(numbers) > 1 else "vehicle", plot.vehicle(k)) for k in numbers),
     ]

@@ -4,32 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from spanwise.responses import Quantity
-    from spanwise.runs import Run
+from spanwise.quantities import RESPONSES, Sense, Side, of_bridges
 
-Side: TypeAlias = Literal["max", "min"]
+if TYPE_CHECKING:
+    from spanwise.runs import Run
 
 #: Parts of an extreme, and of the largest of its kind, which to exceed is worth a word.
 WORTH: Final = (1e-2, 1e-3)
 
-#: What the two sides of a quantity are called, with unit and scale.
-SIDES: Final[dict[tuple[Quantity, Side], tuple[str, str, float]]] = {
-    ("deflection", "max"): ("deflection, down", "mm", 1e3),
-    ("deflection", "min"): ("deflection, up", "mm", 1e3),
-    ("moment", "max"): ("moment, sagging", "kN m", 1e-3),
-    ("moment", "min"): ("moment, hogging", "kN m", 1e-3),
-    ("shear", "max"): ("shear, positive", "kN", 1e-3),
-    ("shear", "min"): ("shear, negative", "kN", 1e-3),
-    ("reactions", "max"): ("reaction, up", "kN", 1e-3),
-    ("reactions", "min"): ("reaction, uplift", "kN", 1e-3),
-    ("clamp_moments", "max"): ("clamp moment, positive", "kN m", 1e-3),
-    ("clamp_moments", "min"): ("clamp moment, negative", "kN m", 1e-3),
-}
+#: Which values of a response are its largest, and which its smallest.
+SENSES: Final[dict[Side, Sense]] = {"max": "positive", "min": "negative"}
 
 
 @dataclass(frozen=True)
@@ -50,11 +38,20 @@ class Growth:
         What free vibration can reach there: a bound, no value that it must come to.
     """
 
-    quantity: Quantity
+    quantity: str
     side: Side
     x: float
     recorded: float
     reach: float
+
+    def __str__(self) -> str:
+        """What can grow, where, how far, and what there is of it."""
+        of = RESPONSES[self.quantity]
+        unit, scale = of.shown
+        return (
+            f"{of.called(SENSES[self.side])}: {self.reach * scale:.3f} {unit} at most, at "
+            f"x = {self.x:.3f} m, recorded there {self.recorded * scale + 0.0:.3f}"
+        )
 
 
 def growths(run: Run) -> Iterator[Growth]:
@@ -62,43 +59,18 @@ def growths(run: Run) -> Iterator[Growth]:
 
     And by more than a thousandth of the largest of its kind along the bridge.
     """
-    for quantity, side in SIDES:
-        reach = run._core.reach(quantity)
+    for each in of_bridges():
+        reach = run._core.reach(each.name)
         if reach is None or len(reach) == 0:
             continue
-        envelope = run.envelope(quantity)
+        envelope = run.envelope(each.name)
         largest = np.maximum(np.abs(envelope.max.value), np.abs(envelope.min.value)).max()
-        sign = 1.0 if side == "max" else -1.0
-        recorded = sign * getattr(envelope, side).value
-        excess = reach - recorded
-        more = np.where(excess > WORTH[0] * np.abs(recorded) + WORTH[1] * largest, excess, 0.0)
-        i = int(np.argmax(more))
-        if more[i] > 0.0:
-            yield Growth(
-                quantity,
-                side,
-                float(envelope.x[i]),
-                float(sign * recorded[i]),
-                float(sign * reach[i]),
-            )
-
-
-def growth_in_words(growth: Growth) -> str:
-    """What can grow, where, how far, and what there is of it."""
-    name, unit, scale = SIDES[growth.quantity, growth.side]
-    return (
-        f"{name}: {growth.reach * scale:.3f} {unit} at most, at x = {growth.x:.3f} m, "
-        f"recorded there {growth.recorded * scale + 0.0:.3f}"
-    )
-
-
-def tail_in_words(run: Run) -> str:
-    """How long the tail is, and why."""
-    length = f"tail {run.tail:.4g} s"
-    if run._core.reach("deflection") is None:
-        length += ", a vehicle standing on the bridge"
-    if run.settings["tail"] is not None:
-        return length
-    if run.settled:
-        return f"{length}, until no extreme can follow"
-    return f"{length}, the longest kept: ten periods of the slowest mode"
+        sides: tuple[tuple[Side, float], ...] = (("max", 1.0), ("min", -1.0))
+        for side, sign in sides:
+            recorded = sign * getattr(envelope, side).value
+            excess = reach - recorded
+            more = np.where(excess > WORTH[0] * np.abs(recorded) + WORTH[1] * largest, excess, 0.0)
+            i = int(np.argmax(more))
+            if more[i] > 0.0:
+                there = float(sign * recorded[i]), float(sign * reach[i])
+                yield Growth(each.name, side, float(envelope.x[i]), *there)

@@ -1,56 +1,17 @@
-"""Which keys a table of a case file may have: those that the function it goes to accepts."""
+"""Which known name is meant by one that is not known."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
 from difflib import SequenceMatcher
 from functools import wraps
-from inspect import Parameter, signature
+from inspect import signature
 from typing import Any, Final, TypeVar, cast
 
-from spanwise._shown import LONGEST, shown
+from spanwise._shown import LONGEST
 
 T = TypeVar("T")
-
-
-@dataclass(frozen=True)
-class Keys:
-    """Keys of one table.
-
-    Attributes
-    ----------
-    allowed : tuple of str
-        All of them, in the order of the function's signature.
-    required : tuple of str
-        Those without a default.
-    """
-
-    allowed: tuple[str, ...]
-    required: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, function: Callable[..., Any]) -> Keys:
-        """The keyword-only arguments of a function or class."""
-        found = [p for p in signature(function).parameters.values() if p.kind is p.KEYWORD_ONLY]
-        required = [p.name for p in found if p.default is Parameter.empty]
-        return cls(tuple(p.name for p in found), tuple(required))
-
-    def check_known(self, table: Mapping[Any, object], hint: Callable[[str], str]) -> None:
-        """Refuse unknown keys, with a hint or else the nearest known key."""
-        for key in table:
-            if key not in self.allowed:
-                help_ = (hint(key) if isinstance(key, str) else "") or suggestion(key, self.allowed)
-                raise ValueError(
-                    f"unknown key {shown(key)}{help_}; allowed: {', '.join(self.allowed)}"
-                )
-
-    def check_complete(self, table: Mapping[str, object]) -> None:
-        """Refuse a table in which a required key is missing."""
-        missing = [key for key in self.required if key not in table]
-        if missing:
-            raise ValueError(f"missing {', '.join(missing)}")
 
 
 def suggesting(target: T) -> T:

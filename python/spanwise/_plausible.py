@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from spanwise._conditions import Conditions
 from spanwise.bridge import Bridge
-from spanwise.roads import ISO8608, Profile, Road, Sum
+from spanwise.roads import ISO8608, Profile, Road
 from spanwise.traffic import Drive, Passage, Speeds
 from spanwise.vehicle import Vehicle
 
@@ -96,8 +96,7 @@ def doubts(
 
 def doubts_of_roads(roads: Iterable[Road]) -> tuple[str, ...]:
     """What was said of roads as they were made."""
-    parts = [part for road in roads for part in (road.parts if isinstance(road, Sum) else (road,))]
-    found = (f"road: {each}" for part in parts for each in part._doubts)
+    found = (f"road: {each}" for road in roads for part in road._summands for each in part._doubts)
     return tuple(dict.fromkeys(found))
 
 
@@ -233,13 +232,11 @@ def _speed(passage: Passage, speed: float) -> str | None:
 
 def _spacing(road: Road, speed: float) -> str | None:
     """Of a measured road at a speed: points too far apart for what a vehicle feels."""
-    if isinstance(road, Sum):
-        return next(filter(None, (_spacing(each, speed) for each in road.parts)), None)
-    if not isinstance(road, Profile) or road.is_smooth:
+    measured = [each for each in road._summands if isinstance(each, Profile) and not each.is_smooth]
+    coarse = (each for each in measured if each.spacing > max(_FINE, speed / (2.0 * _FELT)))
+    if (found := next(coarse, None)) is None:
         return None
-    spacing = road.spacing
-    if spacing <= max(_FINE, speed / (2.0 * _FELT)):
-        return None
+    spacing = found.spacing
     return (
         f"road: its points are {spacing:.3g} m apart, and waves shorter than {2 * spacing:.3g} m, "
         f"which at {speed:.3g} m/s a vehicle feels from {speed / (2 * spacing):.2g} Hz on, are not "
@@ -251,7 +248,8 @@ def _passed_over(road: Road, speed: float, step: float | None, advance: float | 
     """Of a step, or a way per step, that was given: waves of the road that it passes over."""
     by_step = math.inf if step is None else step * speed
     way = by_step if advance is None else min(advance, by_step)
-    patch, shortest = _shortest(road)
+    waves = map(_shortest, road._summands)
+    patch, shortest = min(waves, key=lambda each: (max(each), each[0]))
     # What is shorter than the contact patch is averaged away.
     if not math.isfinite(way) or way <= patch or way <= 0.5 * shortest:
         return None
@@ -263,9 +261,7 @@ def _passed_over(road: Road, speed: float, step: float | None, advance: float | 
 
 
 def _shortest(road: Road) -> tuple[float, float]:
-    """Contact patch and shortest wave, or edge, of what is shortest in a road [m]."""
-    if isinstance(road, Sum):
-        return min(map(_shortest, road.parts), key=lambda each: (max(each), each[0]))
+    """Contact patch and shortest wave, or edge, of a road that is no sum [m]."""
     patch = float(getattr(road, "contact_patch", 0.0))
     if road.is_smooth:
         return patch, np.inf

@@ -13,13 +13,12 @@ import numpy as np
 
 from spanwise._core import __version__
 from spanwise._files import write_files
+from spanwise._plain import json_lines
 from spanwise._shown import warned
 from spanwise._streams import tell
 from spanwise.case import Case
-from spanwise.report import json_lines
 from spanwise.roads import IriSegments, IsoClass, Profile, Road
 from spanwise.roads._options import written_as
-from spanwise.summary import road_in_words
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
@@ -195,7 +194,7 @@ def _text(
     told: list[str],
 ) -> str:
     lines = [
-        f"road      {road_in_words(road)}",
+        f"road      {road}",
         f"section   {section[0]:g} to {section[1]:g} m",
         f"IRI       {index if isinstance(index, str) else f'{index:.2f} m/km'}",
     ]
@@ -226,7 +225,7 @@ def _as_dict(
 ) -> dict[str, Any]:
     table: dict[str, Any] = {
         "version": __version__,
-        "road": road_in_words(road),
+        "road": str(road),
         "section": list(section),
         "warnings": told,
     }

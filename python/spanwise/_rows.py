@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._value import Value, frozen
-from spanwise.columns import Moments
+from spanwise.extremes import When
 
 Array: TypeAlias = NDArray[np.float64]
 Whole: TypeAlias = NDArray[np.uint32]
@@ -68,23 +68,8 @@ class Rows(Value):
     @classmethod
     def of(cls, core: _core.Ensemble) -> Rows:
         """Those of a run."""
-        return cls(
-            numbers=core.numbers,
-            instants=core.instants,
-            digests=core.digests,
-            marches=core.marches,
-            at_rest=core.at_rest,
-            clock=core.clock,
-            columns=core.columns,
-            widths=dict(core.widths),
-            failures=core.failures,
-            sections=core.sections,
-            omega=core.omega,
-            shares=core.shares,
-            isa=core.isa,
-            threads=core.threads,
-            elapsed=core.elapsed,
-        )
+        found = {each.name: getattr(core, each.name) for each in fields(cls)}
+        return cls(**{**found, "widths": dict(core.widths)})
 
     def __post_init__(self) -> None:
         for each in vars(self).values():
@@ -93,7 +78,7 @@ class Rows(Value):
 
     @classmethod
     def joined(cls, parts: Sequence[Rows]) -> Rows:
-        """Several as one, in this order; all are of one recipe."""
+        """Several as one, in this order; all are of one plan."""
         first = parts[0]
         clock, renumbered = _core.Clock.joined([each.clock for each in parts])
         marches = [
@@ -107,23 +92,19 @@ class Rows(Value):
             for number, each in zip(renumbered, parts, strict=True):
                 at_rest[number] = each.at_rest
         starts = np.cumsum([0, *(len(each.numbers) for each in parts)])
-        return cls(
+        return replace(
+            first,
             numbers=np.concatenate([each.numbers for each in parts]),
             instants=np.concatenate([each.instants for each in parts]),
             digests=np.concatenate([each.digests for each in parts]),
             marches=np.concatenate(marches),
             at_rest=at_rest,
             clock=clock,
-            columns=first.columns,
-            widths=first.widths,
             failures=[
                 (int(start) + row, step, cause)
                 for start, each in zip(starts, parts, strict=False)
                 for row, step, cause in each.failures
             ],
-            sections=first.sections,
-            omega=first.omega,
-            shares=first.shares,
             isa=", ".join(dict.fromkeys(each.isa for each in parts)),
             threads=max(each.threads for each in parts),
             elapsed=sum(each.elapsed for each in parts),
@@ -149,6 +130,12 @@ class Rows(Value):
         return sum(self.widths.values())
 
     @property
+    def axles(self) -> int:
+        """How many axles there are at most."""
+        start, end = self.columns["axle_loads"]
+        return (end - start) // 2
+
+    @property
     def statics(self) -> Array:
         """Static extremes, largest and then smallest: one row for all samples, or one for each."""
         low, high = self.columns["statics"]
@@ -157,7 +144,7 @@ class Rows(Value):
         # In their own steps, which are halved for some.
         return self.at_rest[0] if len(self.at_rest) == 1 else self.at_rest[self.marches]
 
-    def moments(self, start: int, width: int, speeds: Array) -> Moments:
+    def when(self, start: int, width: int, speeds: Array) -> When:
         """Times and positions of some of the extremes, counted through responses and loads."""
         some = slice(start, start + width)
         low, high = self.columns["times"]
@@ -173,6 +160,6 @@ class Rows(Value):
         """The time step of a sample at its speed [s] and how often it was halved, if known."""
         return self.clock.step(int(self.marches[row]), speed)
 
-    def frozen_statics(self, some: slice) -> Array:
+    def frozen_statics(self, start: int, width: int) -> Array:
         """Static extremes of some responses, not to be written to."""
-        return frozen(np.array(self.statics[..., some]))
+        return frozen(np.array(self.statics[..., start : start + width]))

@@ -9,9 +9,10 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._build import Place, check_known
 from spanwise._checks import array, first_of, shown
 from spanwise._events import Event
-from spanwise._keys import suggestion
+from spanwise._table import listed
 from spanwise._value import Value
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Vehicle
@@ -57,6 +58,17 @@ class Factors(Value):
     name: str
     values: Array
 
+    def __str__(self) -> str:
+        """What varies from where to where, or by what it differs in all samples."""
+        values = self.values
+        if values.size == 0:
+            return f"varied    {self.name}"
+        if (values == values[0]).all():
+            alike = (values[0] == values[0, 0]).all()
+            found = listed(values[0, :1] if alike else values[0], ".4g")
+            return f"factor    {self.name} {found} for all samples"
+        return f"varied    {self.name} from {values.min():.4g} to {values.max():.4g}"
+
     def of(self, sample: int) -> Factors:
         """Those of one sample."""
         row = sample if len(self.values) > 1 else 0
@@ -83,7 +95,7 @@ def factors_of(
     samples: int,
 ) -> list[Factors]:
     """All factors, those that values come to included."""
-    given, absolute = _table("factors", factors), _table("values", values)
+    given, absolute = by_parameter("factors", factors), by_parameter("values", values)
     for name in absolute:
         if name in given:
             raise ValueError(f"values: {name} is among the factors too; give one of the two")
@@ -196,24 +208,20 @@ def _plural(name: str) -> str:
     return "bodies" if name in OF_BODIES else "axles"
 
 
-def _table(key: str, table: object) -> Mapping[str, object]:
+def by_parameter(key: str, table: object) -> dict[str, Array]:
+    """Numbers by the name of what varies."""
     if table is None:
         return {}
     if not isinstance(table, Mapping):
         raise ValueError(f"{key} = {shown(table)}: must be a mapping from name to numbers")
     allowed = [name for name in ATTRIBUTES if key == "factors" or name not in OF_BRIDGES]
-    for name in table:
-        if name not in ATTRIBUTES:
-            near = suggestion(name, allowed)
-            raise ValueError(
-                f"{key}: unknown parameter {shown(name)}{near}; allowed: {', '.join(allowed)}"
-            )
-    return table
+    strange = {name: None for name in table if name not in ATTRIBUTES}
+    check_known(strange, allowed, Place(key), "parameter")
+    return {name: array(f"{key}[{name!r}]", each) for name, each in table.items()}
 
 
-def _columns(key: str, name: str, given: object, samples: int) -> Array:
+def _columns(key: str, name: str, values: Array, samples: int) -> Array:
     """Shape (1, 1) for a number, else one row for each sample."""
-    values = array(f"{key}[{name!r}]", given)
     if key == "values" and name != "initial_friction":
         if (wrong := values < 0.0).any():
             said = first_of(f"values[{name!r}]", values, wrong)

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._checks import flag, number
+from spanwise._door import view
+from spanwise._shown import many
+from spanwise._table import listed
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
     from spanwise.plotting import VehiclePlot
-    from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -39,9 +41,7 @@ class Wheels:
     @property
     def plot(self) -> VehiclePlot:
         """Figures of the vehicle or train; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import VehiclePlot
-
-        return VehiclePlot(cast("AnyVehicle", self))
+        return view("plotting.VehiclePlot")(self)
 
     @property
     def total_mass(self) -> float:
@@ -68,8 +68,35 @@ class Wheels:
 
     def _row(self) -> str:
         """How many axles, and over what length, for a short text."""
-        axles = len(self.axle_positions)
-        return f"{axles} axle{'s' if axles > 1 else ''}, {self.wheelbase:.4g} m"
+        return f"{many(len(self.axle_positions), 'axle')}, {self.wheelbase:.4g} m"
+
+    @property
+    def _total(self) -> str:
+        """Its mass, or the sum of its forces, for a short text."""
+        return f"{self.total_mass / 1e3:.2f} t"
+
+    @property
+    def _bodies_in_words(self) -> str:
+        """How many bodies there are, if it is made of several."""
+        return ""
+
+    @property
+    def _frequencies_in_words(self) -> list[str]:
+        """Those on rigid ground: of both states, if friction makes two."""
+        holding, sliding = (self.frequencies(locked=locked) for locked in (True, False))
+        if len(holding) == 0:
+            return []
+        if np.array_equal(holding, sliding):
+            return [f"{listed(holding, '.3f')} Hz"]
+        return [
+            f"{listed(holding, '.3f')} Hz while friction holds",
+            f"{listed(sliding, '.3f')} Hz sliding",
+        ]
+
+    @property
+    def _unsprung(self) -> list[float]:
+        """Unsprung masses of the axles [kg], if there are any."""
+        return []
 
     @property
     def coordinates(self) -> list[str]:

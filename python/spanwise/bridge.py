@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise import _core, _given
+from spanwise import _bridge_arrays, _core
 from spanwise._checks import (
     array,
     count,
@@ -23,6 +23,7 @@ from spanwise._checks import (
     shown,
     word,
 )
+from spanwise._door import view
 from spanwise._keys import alike, suggesting
 from spanwise._value import Value, key, same
 from spanwise.layout import (
@@ -31,20 +32,19 @@ from spanwise.layout import (
     Support,
     along,
     along_argument,
+    support,
     support_argument,
 )
 from spanwise.layout import (
     supports as supports_of,
 )
+from spanwise.quantities import influence_lines
 
 if TYPE_CHECKING:
     from spanwise.plotting import BridgePlot, SettlementPlot
 
 Array: TypeAlias = NDArray[np.float64]
 End: TypeAlias = Literal["pinned", "clamped", "free"]
-Quantity: TypeAlias = Literal[
-    "deflection", "slope", "moment", "shear-left", "shear-right", "reaction", "clamp-moment"
-]
 Side: TypeAlias = Literal["left", "right"]
 Structure: TypeAlias = Literal["actual", "basic"]
 
@@ -123,9 +123,7 @@ class Settlement(Value):
     @property
     def plot(self) -> SettlementPlot:
         """Its figure, when called; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import SettlementPlot
-
-        return SettlementPlot(self)
+        return view("plotting.SettlementPlot")(self)
 
 
 class Bridge:
@@ -217,7 +215,8 @@ class Bridge:
         else:
             if ends is not None:
                 raise ValueError("ends: used with spans only; supports says how the ends are held")
-            total, placed = number("length", length), supports_of("supports", supports)
+            total = number("length", length)
+            placed = [*map(astuple, supports_of("supports", supports))]
         self._core = _core.Bridge(
             length=total,
             supports=placed,
@@ -296,10 +295,10 @@ class Bridge:
         ----------
         .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973), section 2.3.
         """
-        at = numbers("stations", stations)
+        at, held = numbers("stations", stations), supports_of("supports", supports)
         given: dict[str, Any] = {
             "length": number("length", length),
-            "supports": supports_of("supports", supports),
+            "supports": [*map(astuple, held)],
             "stations": at,
             "masses": numbers("masses", masses),
             "redundants": [
@@ -307,21 +306,18 @@ class Bridge:
                 for i, each in enumerate(items("redundants", redundants, "a list of stations"))
             ],
             "path": at if path is None else numbers("path", path),
-            "flexibility": _given.matrix("flexibility", flexibility),
-            "slopes": None if slopes is None else _given.matrix("slopes", slopes),
+            "flexibility": _bridge_arrays.matrix("flexibility", flexibility),
+            "slopes": None if slopes is None else _bridge_arrays.matrix("slopes", slopes),
         }
         arguments: dict[str, Any] = {
             **given,
-            "supports": [
-                support_argument(Support(at=x, vertical=k, rotation=c))
-                for x, k, c in given["supports"]
-            ],
+            "supports": [*map(support_argument, held)],
             "redundants": [
                 support_argument(Support(at=x, vertical=k)) if np.isfinite(k) else x
                 for x, k in given["redundants"]
             ],
-            "flexibility": _given.plain(given["flexibility"]),
-            "slopes": _given.plain(given["slopes"]),
+            "flexibility": _bridge_arrays.plain(given["flexibility"]),
+            "slopes": _bridge_arrays.plain(given["slopes"]),
         }
         return cls._of(_core.Bridge.from_flexibility(**given), {"from_flexibility": arguments})
 
@@ -395,24 +391,25 @@ class Bridge:
             If the modes explain very little of the lines of deflection, as with frequencies in
             rad/s.
         """
+        held = supports_of("supports", supports)
         given: dict[str, Any] = {
             "path": numbers("path", path),
             "frequencies": numbers("frequencies", frequencies),
             "sections": numbers("sections", sections),
-            "supports": supports_of("supports", supports),
+            "supports": [*map(astuple, held)],
             "masses": None if masses is None else numbers("masses", masses),
         }
-        both = _given.sides("shapes", shapes)
-        lines = _given.influence_lines(influence, influence_slopes, modal)
+        both = _bridge_arrays.sides("shapes", shapes)
+        lines = _bridge_arrays.influence_lines(influence, influence_slopes, modal)
         core = _core.Bridge.from_modes(
             **given,
             shapes=both,
-            slopes=None if slopes is None else _given.sides("slopes", slopes),
+            slopes=None if slopes is None else _bridge_arrays.sides("slopes", slopes),
             influence=lines,
         )
         for quantity, (values, _), *_ in lines:
             if quantity == "deflection":
-                _given.check_flexibility(
+                _bridge_arrays.check_flexibility(
                     given["path"], given["frequencies"], both[0], given["sections"], values
                 )
         arrays = {
@@ -422,11 +419,9 @@ class Bridge:
             "influence_slopes": influence_slopes,
             "modal": modal,
         }
-        held = [
-            support_argument(Support(at=x, vertical=k, rotation=c)) for x, k, c in given["supports"]
-        ]
-        plain = {key: _given.plain(value) for key, value in arrays.items()}
-        return cls._of(core, {"from_modes": {**given, "supports": held, **plain}})
+        plain = {key: _bridge_arrays.plain(value) for key, value in arrays.items()}
+        arguments = {**given, "supports": [*map(support_argument, held)], **plain}
+        return cls._of(core, {"from_modes": arguments})
 
     @classmethod
     def _of(cls, core: _core.Bridge, arguments: dict[str, Any]) -> Bridge:
@@ -700,7 +695,7 @@ class Bridge:
 
     def influence_line(
         self,
-        quantity: Quantity,
+        quantity: str,
         at: float,
         x: ArrayLike,
         structure: Structure = "actual",
@@ -739,7 +734,7 @@ class Bridge:
         """
         where = array("x", x)
         line = self._core.influence_line(
-            word("quantity", alike(quantity, get_args(Quantity)), *get_args(Quantity)),
+            word("quantity", alike(quantity, influence_lines()), *influence_lines()),
             number("at", at),
             where.ravel(),
             word("structure", structure, *get_args(Structure)),
@@ -751,9 +746,7 @@ class Bridge:
     @property
     def plot(self) -> BridgePlot:
         """Figures of the bridge; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import BridgePlot
-
-        return BridgePlot(self)
+        return view("plotting.BridgePlot")(self)
 
 
 def bridge_of(arguments: Mapping[str, Any]) -> Bridge:
@@ -770,10 +763,11 @@ def _redundant(i: int, value: object) -> tuple[float, float]:
     key = f"redundants[{i}]"
     if not isinstance(value, Support | Mapping):
         return number(key, value), np.inf
-    (x, vertical, rotation), *_ = supports_of("redundants", [value])
-    if rotation != 0.0:
-        raise ValueError(f"{key} rotation = {rotation:g}: must be 0; only the deflection is known")
-    return x, vertical
+    one = support(key, value)
+    if one.rotation != 0.0:
+        said = "must be 0; only the deflection is known"
+        raise ValueError(f"{key} rotation = {one.rotation:g}: {said}")
+    return one.at, one.vertical
 
 
 def _left(side: object) -> bool:

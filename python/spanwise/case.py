@@ -4,52 +4,56 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, TypeVar
 
+from spanwise._build import Maker, Place, Table, check_known, within
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
-from spanwise._keys import Keys, suggestion
-from spanwise._traffictable import OWN, files_in, passage_of, road_in
+from spanwise._conditions import Crossing
+from spanwise._plan_of_arguments import Asked
 from spanwise._value import Hashed
-from spanwise._values import from_plain
-from spanwise._vehicletable import home as vehicle_home
-from spanwise._vehicletable import vehicle_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
-from spanwise.ensembles import ensemble
-from spanwise.population import Ensemble
+from spanwise.ensembles import Ensemble
 from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
-from spanwise.roads.table import KINDS as ROADS
 from spanwise.runs import Run
-from spanwise.traffic import KINDS as DRIVES
+from spanwise.schema import (
+    PASSAGE,
+    Places,
+    Reading,
+    belongs,
+    bridge_of,
+    events_of,
+    places,
+    vehicle_of,
+)
+from spanwise.study import ensemble
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
 __all__ = ["Case", "CaseError"]
 
-Table: TypeAlias = Mapping[str, Any]
+T = TypeVar("T")
 
-BRIDGE: Final = Keys.of(Bridge)
-#: Keys of ``[crossing]`` that only ensembles have.
-FOR_ENSEMBLES: Final = ("advance",)
-#: The road has a table of its own.
-CROSSING: Final = Keys((*(key for key in Keys.of(cross).allowed if key != "road"), *FOR_ENSEMBLES))
-#: Tables, as they are written.
-TABLES: Final = {
-    "bridge": "[bridge]",
-    "vehicle": "[vehicle]",
-    "traffic": "[[traffic]]",
-    "road": "[road]",
-    "crossing": "[crossing]",
-}
 #: A vehicle among several, and what of it, in a message about a crossing.
 VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
+
+#: Tables, as they are written.
+TABLES: Final = {
+    **{name: f"[{name}]" for name in ("bridge", "vehicle", "road", "crossing", "ensemble")},
+    **{name: f"[[{name}]]" for name in ("traffic", "events")},
+}
+
+
+#: The road has a table of its own.
+CROSSING: Final = Maker(Crossing)
+SAMPLING: Final = Maker(Asked, without=("road",))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -58,7 +62,8 @@ class Case(Hashed):
 
     The keys of ``[bridge]`` are the arguments of `Bridge`; those of ``[crossing]`` the keyword
     arguments of `cross`, and ``advance``, which `ensemble` alone uses; a ``drive`` with numbers as
-    ``{ kind = "braking", deceleration = 4.0 }``.
+    ``{ kind = "braking", deceleration = 4.0 }``. ``[ensemble]``, beside ``[crossing]`` or in its
+    place, has keyword arguments of `ensemble`.
 
     The keys of ``[vehicle]`` are the arguments of `Vehicle`, with one table ``[[vehicle.axles]]``
     for each `Axle`, front first; or for a vehicle of several bodies one table
@@ -70,7 +75,8 @@ class Case(Hashed):
     a list of one force [N] for each axle.
 
     In place of ``[vehicle]`` one table ``[[traffic]]`` for each of several vehicles has the
-    arguments of `Passage`: a ``vehicle`` with the keys above, and how that one crosses.
+    arguments of `Passage`: a ``vehicle`` with the keys above, and how that one crosses. For an
+    ensemble of several kinds of event there is ``[[events]]``, each such a table or a list of them.
 
     ``[road]``, or ``[[road]]`` for each part of a sum, is a table of `roads.from_table`; without,
     the road is smooth. Files that it names are looked for from the folder of the case file on.
@@ -83,13 +89,17 @@ class Case(Hashed):
     passages : tuple of Passage
         The vehicles and how each of them crosses.
     crossing : dict
-        Keyword arguments of `cross`, but the road.
+        Keyword arguments of `cross`, but the road; with objects in place of tables.
     road : Road or None
         The road, if the case has one.
     source : str
         Name of the file, for messages.
     files : tuple of Path
         The file itself, and the files of roads that it names.
+    sampling : dict
+        Keyword arguments of `ensemble`, beside those and in their place.
+    events : tuple of tuple of Passage
+        The kinds of event of an ensemble, if there are several.
 
     Examples
     --------
@@ -117,23 +127,32 @@ class Case(Hashed):
     road: Road | None = None
     source: str = field(default="case", compare=False)
     files: tuple[Path, ...] = field(default=(), compare=False, repr=False)
+    sampling: dict[str, Any] = field(default_factory=dict)
+    events: tuple[tuple[Passage, ...], ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.bridge, Bridge):
             raise TypeError(f"bridge = {shown(self.bridge)}: must be a Bridge")
-        passages = items("passages", self.passages, "a list of Passage")
-        for i, each in enumerate(passages):
-            if not isinstance(each, Passage):
-                raise TypeError(f"passages[{i}] = {shown(each)}: must be a Passage")
+        passages = _passages("passages", self.passages)
         if not passages:
             raise ValueError("passages = []: must have at least one")
         if self.road is not None and not isinstance(self.road, Road):
             raise TypeError(f"road = {shown(self.road)}: must be a Road")
-        object.__setattr__(self, "passages", tuple(passages))
-        crossing = dict(mapping("crossing", self.crossing, "a mapping of arguments by name"))
-        CROSSING.check_known(crossing, _home)
-        object.__setattr__(self, "crossing", crossing)
         checks_text("source", self.source)
+        events = items("events", self.events, "a list of kinds of event")
+        made: dict[str, Any] = {
+            "passages": passages,
+            "events": tuple(_passages(f"events[{k}]", each) for k, each in enumerate(events)),
+        }
+        for name, table, maker in (
+            ("crossing", "crossing", CROSSING),
+            ("sampling", "ensemble", SAMPLING),
+        ):
+            given = mapping(name, getattr(self, name), "a mapping of arguments by name")
+            with within(f"{self.source}, [{table}]", CaseError):
+                made[name] = maker.arguments(given, Reading(home=_home).place(table))
+                maker.make(**made[name])
+        vars(self).update(made)
 
     @classmethod
     def read(cls, path: str | Path) -> Case:
@@ -168,15 +187,13 @@ class Case(Hashed):
             As from `read`.
         """
         path = file_path("path", path)
+        reading = Reading(path.parent, _home)
         tables = parse_toml(read_text(path), str(path))
-        with _errors_in(str(path)):
-            _check_names(tables)
-        road: Road = Smooth()
-        if "road" in tables:
-            with _errors_in(f"{path}, [road]"):
-                road = road_in(tables["road"], path.parent, _home)
-        files = files_in({"road": tables.get("road", ())}, path.parent)
-        return road, (path, *files)
+        with within(str(path), CaseError):
+            _check_tables(tables)
+        with within(f"{path}, [road]", CaseError):
+            road = reading.road(tables.get("road", Smooth()), reading.place("road"))
+        return road, (path, *reading.files)
 
     @classmethod
     def parse(cls, text: str, source: str = "case", folder: str | Path = ".") -> Case:
@@ -193,10 +210,8 @@ class Case(Hashed):
 
         Raises
         ------
-        OSError
-            If a file that it names cannot be read.
-        CaseError
-            A ValueError: if the text is not a case, or a value in it is not allowed.
+        OSError, CaseError
+            As from `read`.
         """
         checks_text("source", source)
         tables = parse_toml(checks_text("text", text), source)
@@ -215,38 +230,42 @@ class Case(Hashed):
 
         Raises
         ------
-        OSError
-            If a file that it names cannot be read.
-        CaseError
-            A ValueError: if a table, key or value is not allowed.
+        OSError, CaseError
+            As from `read`.
         """
         checks_text("source", source)
-        with _errors_in(source):
-            plain = from_plain(mapping("tables", tables, "the tables of a case by name"))
-        return cls._of(plain, source, file_path("folder", folder))
+        with within(source, CaseError):
+            mapping("tables", tables, "the tables of a case by name")
+        return cls._of(tables, source, file_path("folder", folder))
 
     @classmethod
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
-        with _errors_in(source):
+        reading = Reading(folder, _home)
+
+        def read(name: str, make: Callable[[Any, Place], T], *table: Any, where: str = "") -> T:
+            with within(f"{source}, {where or TABLES[name]}", CaseError):
+                return make(table[0] if table else tables[name], reading.place(name))
+
+        with within(source, CaseError):
             _check_tables(tables)
-        with _errors_in(f"{source}, [bridge]"):
-            bridge = _bridge(tables["bridge"])
-        road = None
-        if "road" in tables:
-            with _errors_in(f"{source}, [road]"):
-                road = road_in(tables["road"], folder, _home)
-        if "vehicle" in tables:
-            with _errors_in(f"{source}, [vehicle]"):
-                passages = [Passage(vehicle=vehicle_of(tables["vehicle"], _home))]
+            _check_complete(tables)
+        sampling = {**tables.get("ensemble", {})}
+        if "road" in sampling and "road" not in tables:  # where the settings of an ensemble have it
+            tables = {**tables, "road": sampling.pop("road")}
+        bridge = read("bridge", bridge_of)
+        road = read("road", reading.road) if "road" in tables else None
+        if "events" in tables:
+            events = read("events", events_of)
+        elif "vehicle" in tables:
+            events = [(Passage(vehicle=read("vehicle", vehicle_of)),)]
         else:
-            passages = []
-            for k, table in enumerate(tables["traffic"]):
-                with _errors_in(f"{source}, {_number(k)}"):
-                    passages.append(passage_of(table, folder, _home))
-        with _errors_in(f"{source}, [crossing]"):
-            CROSSING.check_known(tables["crossing"], _home)
-        files = tuple(files_in(tables, folder))
-        return cls(bridge, tuple(passages), dict(tables["crossing"]), road, source, files)
+            each = enumerate(tables["traffic"])
+            events = [
+                tuple(read("traffic", PASSAGE.build, one, where=_number(k)) for k, one in each)
+            ]
+        kinds = tuple(events) if len(events) > 1 else ()
+        crossing, files = tables.get("crossing", {}), tuple(reading.files)
+        return cls(bridge, events[0], crossing, road, source, files, sampling, kinds)
 
     @property
     def vehicle(self) -> AnyVehicle:
@@ -259,31 +278,39 @@ class Case(Hashed):
         Raises
         ------
         CaseError
-            A ValueError: if a value is not allowed.
+            A ValueError: if a value is not allowed, or the case is one of an ensemble alone.
         RuntimeError
             If the numerics fail, or under constant traction a vehicle comes to rest.
         """
-        own = {key: each for key, each in self.crossing.items() if key not in FOR_ENSEMBLES}
+        if self.events or (self.sampling and not self.crossing and not overrides):
+            needed = "a single crossing takes one event, and a [crossing]"
+            raise CaseError(f"{self.source}: is a case of an ensemble; {needed}")
+        own = {key: each for key, each in self.crossing.items() if key != "advance"}
         given = {"road": self.road, **own, **overrides}
         with self._errors(overridden=bool(overrides)):
             return cross(self.bridge, self.passages, **given)
 
-    def ensemble(self, *, samples: int, **overrides: Any) -> Ensemble:
+    def ensemble(self, *, samples: int | None = None, **overrides: Any) -> Ensemble:
         """Many crossings, with keyword arguments of `ensemble` beside or in place of the file's.
+
+        Without `samples` there are as many as the file's ``[ensemble]`` says.
 
         Raises
         ------
-        CaseError
-            A ValueError: if a value is not allowed.
-        RuntimeError
-            If the numerics of the bridge fail.
+        CaseError, RuntimeError
+            As from `run`.
         """
-        given = {"road": self.road, **self.crossing, **overrides}
+        given = {"road": self.road, **self.crossing, **self.sampling, **overrides}
+        given |= {} if samples is None else {"samples": samples}
+        if "samples" not in given:
+            raise CaseError(f"{self.source}: missing samples; give them here or in [ensemble]")
+        events = self.events or (self.passages,)
         # As for a single crossing, the file's speed may be there for nobody.
-        if "speed" not in overrides and all(each.speed is not None for each in self.passages):
+        if "speed" not in overrides and all(e.speed is not None for event in events for e in event):
             given.pop("speed", None)
+        who = [[*event] for event in events]
         with self._errors(overridden=True):
-            return ensemble(self.bridge, [*self.passages], samples=samples, **given)
+            return ensemble(self.bridge, who if self.events else who[0], **given)
 
     @contextmanager
     def _errors(self, *, overridden: bool) -> Iterator[None]:
@@ -301,61 +328,42 @@ def _number(vehicle: int) -> str:
     return f"[[traffic]] number {vehicle + 1}"
 
 
-@contextmanager
-def _errors_in(place: str) -> Iterator[None]:
-    """Puts the place in front of what a check says."""
-    try:
-        yield
-    except ValueError as error:
-        raise CaseError(f"{place}: {error}") from error
+def _passages(key: str, given: object) -> tuple[Passage, ...]:
+    passages = items(key, given, "a list of Passage")
+    for i, each in enumerate(passages):
+        if not isinstance(each, Passage):
+            raise TypeError(f"{key}[{i}] = {shown(each)}: must be a Passage")
+    return tuple(passages)
 
 
-def _check_tables(tables: Mapping[Any, Any]) -> None:
-    _check_names(tables)
-    if "vehicle" in tables and "traffic" in tables:
-        raise ValueError("[vehicle] and [[traffic]]: give one of the two")
-    missing = [name for name in ("bridge", "vehicle", "crossing") if name not in tables]
-    if "traffic" in tables:
-        missing.remove("vehicle")
+def _check_complete(tables: Table) -> None:
+    who = [name for name in ("vehicle", "traffic", "events") if name in tables]
+    if len(who) > 1:
+        raise ValueError(f"{TABLES[who[0]]} and {TABLES[who[1]]}: give one of the two")
+    how = "ensemble" if "ensemble" in tables else "crossing"
+    missing = [name for name in ("bridge", *(who or ["vehicle"]), how) if name not in tables]
     if missing:
-        needed = "a case has [bridge], [vehicle] or [[traffic]], and [crossing]"
-        raise ValueError(f"missing {_list(missing)}; {needed}")
+        needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing] or [ensemble]"
+        raise ValueError(f"missing {', '.join(TABLES[name] for name in missing)}; {needs}")
 
 
-def _check_names(tables: Mapping[Any, Any]) -> None:
+def _check_tables(tables: Table) -> None:
+    check_known(tables, [*TABLES], Place(home=_home), "table or key")
     for name, table in tables.items():
-        if name not in TABLES:
-            hint = (_home(name) if isinstance(name, str) else "") or suggestion(name, TABLES)
-            raise ValueError(f"unknown table or key {shown(name)}{hint}; allowed: {_list(TABLES)}")
         several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
-        if name == "traffic":
-            if not several:
-                raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
-        elif not isinstance(table, Mapping) and not (name == "road" and several):
+        if name == "traffic" and not several:
+            raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
+        many = name in ("traffic", "events") or (name == "road" and several)
+        if not many and not isinstance(table, Mapping):
             raise ValueError(f"{name} = {shown(table)}: must be a table, {TABLES[name]}")
 
 
 def _home(key: str) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
-    homes = {
-        "[bridge]": key in BRIDGE.allowed,
-        vehicle_home(key): vehicle_home(key) != "",
-        "each [[traffic]]": key in OWN,
-        "[road]": key == "kind" or any(key in keys.allowed for _, keys in ROADS.values()),
-        "[crossing]": key in CROSSING.allowed,
-        "a drive": any(key in Keys.of(kind).allowed for kind in DRIVES.values()),
-    }
-    found = [home for home, is_there in homes.items() if is_there]
     if key in TABLES and key != "vehicle":
         return f" (a table of its own, {TABLES[key]})"
-    return f" (belongs in {', '.join(found)})" if found else ""
-
-
-def _list(tables: Iterable[str]) -> str:
-    return ", ".join(TABLES[name] for name in tables)
-
-
-def _bridge(table: Table) -> Bridge:
-    BRIDGE.check_known(table, _home)
-    BRIDGE.check_complete(table)
-    return Bridge(**table)
+    own: Places = {
+        "crossing": {"[crossing]": CROSSING.keys},
+        "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys()},
+    }
+    return belongs(key, {**places(), **own})

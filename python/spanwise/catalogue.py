@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import MISSING, fields
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator
+from typing import Final
 
-from spanwise._checks import shown
-from spanwise._keys import suggestion
-from spanwise.trains import ForceTrain
-from spanwise.vehicle import Vehicle
+from spanwise._checks import choice
+from spanwise._table import Table, listed
+from spanwise._toml import toml, toml_value
+from spanwise.schema import vehicle_table
 from spanwise.vehicles import PRESETS, AnyVehicle, Preset
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 RECALLED: Final = "* recalled, not read at the source: check before relying on it"
 
@@ -23,54 +19,35 @@ LOWEST: Final = 3
 
 def listing() -> str:
     """All presets in a table: axles, mass or weight, length, lowest frequencies, source."""
-    names = max(map(len, PRESETS)) + 1
-    lines = [f"{'preset':<{names}} axles      total  length [m]  frequencies [Hz]       source"]
+    rows = []
     for name, preset in PRESETS.items():
         vehicle = preset()
-        marked = name + ("*" if preset.recalled else "")
         found = vehicle.frequencies(locked=True)
-        sounding = ", ".join(f"{f:.2f}" for f in found[:LOWEST]) or "-"
+        sounding = listed(found[:LOWEST], ".2f") or "-"
         sounding += ", ..." if len(found) > LOWEST else ""
-        lines.append(
-            f"{marked:<{names}} {len(vehicle.axle_positions):>5}  {_total(vehicle):>9}"
-            f"  {vehicle.wheelbase:>10.3f}  {sounding:<22} {preset.source}"
-        )
-    return "\n".join(
-        [
-            *lines,
-            "",
-            "length: from first to last axle; frequencies: the lowest on rigid ground, while",
-            "friction holds; none of a train of forces. More of one: spanwise vehicles PRESET",
-            RECALLED,
-        ]
-    )
+        marked = name + ("*" if preset.recalled else "")
+        axles = len(vehicle.axle_positions)
+        rows.append([marked, axles, vehicle._total, vehicle.wheelbase, sounding, preset.source])
+    heads = ["preset", "axles", "total", "length [m]", "frequencies [Hz]", "source"]
+    notes = [
+        "",
+        "length: from first to last axle; frequencies: the lowest on rigid ground, while",
+        "friction holds; none of a train of forces. More of one: spanwise vehicles PRESET",
+        RECALLED,
+    ]
+    return str(Table(heads, rows, ["<", ">", ">", ".3f", "<", "<"], notes))
 
 
 def detail(name: str) -> str:
     """A preset with its axle loads and frequencies, and as the table of a case file."""
-    if name not in PRESETS:
-        hint = suggestion(name, PRESETS)
-        raise ValueError(f"preset = {shown(name)}: must be one of {', '.join(PRESETS)}{hint}")
-    preset = PRESETS[name]
+    preset = PRESETS[choice("preset", name, PRESETS)]
     vehicle = preset()
     return "\n".join([*_description(name, preset, vehicle), "", as_toml(vehicle)])
 
 
 def as_toml(vehicle: AnyVehicle) -> str:
     """The vehicle as the table ``[vehicle]`` of a case file; what has its default is left out."""
-    if not isinstance(vehicle, Vehicle):
-        return "\n".join(["[vehicle]", *_keys(vehicle)])
-    if not vehicle.bodies:
-        lines = ["[vehicle]", *_keys(vehicle)]
-        return "\n".join([*lines, *_tables("vehicle.axles", vehicle.axles)])
-    lines = []
-    for body in vehicle.bodies:
-        lines += ["", "[[vehicle.bodies]]", *_keys(body)]
-        lines += _tables("vehicle.bodies.axles", body.axles)
-        if body.hinge is not None:
-            lines += ["", "[vehicle.bodies.hinge]", *_keys(body.hinge)]
-        lines += _tables("vehicle.bodies.springs", body.springs)
-    return "\n".join(lines[1:])
+    return toml({"vehicle": vehicle_table(vehicle, defaults=False)})
 
 
 def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str]:
@@ -79,51 +56,12 @@ def _description(name: str, preset: Preset, vehicle: AnyVehicle) -> Iterator[str
     if preset.recalled:
         yield f"          {RECALLED.removeprefix('* ')}"
     if preset.options:
-        options = (f"{key} = {_value(default)}" for key, default in preset.options.items())
+        options = (f"{key} = {toml_value(default)}" for key, default in preset.options.items())
         yield f"options   {', '.join(options)}"
-    yield f"total     {_total(vehicle)}"
+    yield f"total     {vehicle._total}"
     loads = vehicle.static_loads() / 1e3
-    yield f"axles     {_list(loads, '.1f')} kN, {_list(vehicle.axle_spacings, '.3f') or 0} m apart"
-    holding, sliding = (vehicle.frequencies(locked=locked) for locked in (True, False))
-    if len(holding) == 0:
-        return
-    yield f"coords    {', '.join(vehicle.coordinates)}"
-    rubs = not (holding == sliding).all()
-    yield f"on ground {_list(holding, '.3f')} Hz{' while friction holds' if rubs else ''}"
-    if rubs:
-        yield f"          {_list(sliding, '.3f')} Hz sliding"
-
-
-def _total(vehicle: AnyVehicle) -> str:
-    """Mass, or of forces their sum."""
-    if isinstance(vehicle, ForceTrain):
-        return f"{sum(vehicle.loads) / 1e3:.1f} kN"
-    return f"{vehicle.total_mass / 1e3:.2f} t"
-
-
-def _list(values: Iterable[float], form: str) -> str:
-    return ", ".join(format(value, form) for value in values)
-
-
-def _tables(name: str, values: Iterable[DataclassInstance]) -> Iterator[str]:
-    for each in values:
-        yield from ("", f"[[{name}]]", *_keys(each))
-
-
-def _keys(of: DataclassInstance) -> Iterator[str]:
-    """Fields that are numbers or lists of them, and not the default."""
-    for each in fields(of):
-        value = getattr(of, each.name)
-        if each.default is not MISSING and value == each.default:
-            continue
-        text = _value(value)
-        if text is not None:
-            yield f"{each.name} = {text}"
-
-
-def _value(value: object) -> str | None:
-    if isinstance(value, int | float):
-        return repr(value)
-    if isinstance(value, tuple) and all(isinstance(each, float) for each in value):
-        return f"[{', '.join(map(repr, value))}]"
-    return None
+    spacings = listed(vehicle.axle_spacings, ".3f") or 0
+    yield f"axles     {listed(loads, '.1f')} kN, {spacings} m apart"
+    if ground := vehicle._frequencies_in_words:
+        yield f"coords    {', '.join(vehicle.coordinates)}"
+        yield "on ground " + "\n          ".join(ground)

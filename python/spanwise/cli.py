@@ -12,18 +12,16 @@ from typing import Any, Final, NoReturn
 from spanwise import _ensemblecommand, _roadcommand
 from spanwise._checks import choice, count
 from spanwise._core import __version__
-from spanwise._csv import csv_files
 from spanwise._figures import figure_files
 from spanwise._files import Content, write_files
 from spanwise._keys import suggestion
+from spanwise._run_files import csv_files, json_text
 from spanwise._signals import Terminated, terminable
 from spanwise._streams import say, tell
-from spanwise._traffictable import is_random, reseeded
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
-from spanwise.report import json_text
 from spanwise.roads import CLASSES, ISO8608, Smooth
-from spanwise.summary import summary
+from spanwise.roads.random import is_random, reseeded
 
 #: Where a case says for an ensemble what options of a single crossing say in its place.
 IN_CASE: Final = {
@@ -189,7 +187,7 @@ def _cross(options: argparse.Namespace) -> str:
     run = case.run(**_overrides(options, case))
     files: list[tuple[Path, Content]] = []
     folders = []
-    text = summary(run) + "\n"
+    text = run.summary() + "\n"
     if options.json == "-":
         text = json_text(run)
     elif options.json is not None:

@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 
 from spanwise import _core
-from spanwise._checks import number, shown
+from spanwise._checks import shown
 from spanwise._computed import Computed
-from spanwise._conditions import Conditions, Recovery
+from spanwise._conditions import Conditions, Crossing, Recovery
 from spanwise._keys import alike, suggesting
 from spanwise._plausible import doubts
 from spanwise._remarks import remarks
@@ -20,7 +20,7 @@ from spanwise.bridge import Bridge
 from spanwise.damping import Damping
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
-from spanwise.traffic import Drive, Passage, Speeds, core_drive, drive_of, plain_drive
+from spanwise.traffic import Drive, Passage, Speeds, core_drive, plain_drive
 from spanwise.vehicles import PRESETS, AnyVehicle
 
 Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
@@ -155,32 +155,18 @@ def cross(
     ----------
     .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973).
     """
+    asked = Crossing.of(locals())
     if not isinstance(bridge, Bridge):
         raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
     passages = passages_of(vehicle)
     surface = surface_of(road)
-    driven = drive_of(drive)
-    speed = None if speed is None else number("speed", speed)
+    speed, driven = asked.speed, asked.drive
     check_speed([passages], speed, driven)
-    conditions = Conditions.of(
-        bridge,
-        uneven=not all((each.road or surface).is_smooth for each in passages),
-        modes=modes,
-        damping=damping,
-        approach=approach,
-        ramp=ramp,
-        tail=tail,
-        sections=sections,
-        recovery=recovery,
-        step=step,
-        beta=beta,
-        gravity=gravity,
-        lift_off=lift_off,
-        mask=mask,
-    )
+    uneven = not all((each.road or surface).is_smooth for each in passages)
+    conditions = Conditions.of(bridge, asked, uneven=uneven)
     core = _core.cross(
         bridge._core,
-        [_core_passage(each, speed, driven, surface) for each in passages],
+        [core_passage(each, speed, driven, surface) for each in passages],
         **conditions.core,
     )
     settings: dict[str, object] = {
@@ -263,16 +249,20 @@ def check_speed(events: Sequence[tuple[Passage, ...]], speed: float | None, driv
         raise ValueError(f"speed = {speed:g}: not used with speeds in time")
 
 
-def _core_passage(
-    passage: Passage, speed: float | None, drive: Drive, road: Road
+def core_passage(
+    passage: Passage,
+    speed: float | None = None,
+    drive: Drive | None = None,
+    road: Road | None = None,
 ) -> _core._Passage:
-    own = passage.speed if passage.speed is not None else speed
+    """As the core takes it, with what all have in common where it has none of its own."""
+    drive, road = passage.drive or drive, passage.road or road
     return (
         passage.vehicle._core,
-        own,
-        core_drive(passage.drive or drive),
+        speed if passage.speed is None else passage.speed,
+        None if drive is None else core_drive(drive),
         passage.direction,
         passage.entry,
         passage.lane_number,
-        (passage.road or road)._core,
+        None if road is None else road._core,
     )

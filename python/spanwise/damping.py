@@ -9,7 +9,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import array, first_of, number, numbers, pair, shown
+from spanwise._build import Maker, Place, within
+from spanwise._checks import array, first_of, is_list, items, number, numbers, pair, shown
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -92,53 +93,66 @@ FORMS: Final = "[alpha, beta] or { alpha = ..., beta = ... }"
 Damping: TypeAlias = ArrayLike | Rayleigh | Mapping[str, Any]
 
 
-def resolved(damping: object, frequencies: Callable[[], Array]) -> tuple[list[float], Array | None]:
-    """The ratios, or the matrix C; `frequencies` [Hz] are those of the included modes."""
-    if isinstance(damping, Mapping):
-        if [*map(str, damping)] != ["rayleigh"]:
-            raise ValueError(
-                f"damping = {shown(damping)}: must be a number, a list or a matrix, or a "
-                f"table with the key rayleigh, {FORMS}"
+DAMPING: Final = Place("damping")
+
+
+def damping_of(value: object, place: Place = DAMPING) -> Rayleigh | list[float] | Array:
+    """Damping as `Rayleigh`, a list of ratios, or a matrix C."""
+    if isinstance(value, Mapping):
+        if [*map(str, value)] != ["rayleigh"]:
+            raise place.wrong(
+                dict(value),
+                f"a number, a list or a matrix, or a table with the key rayleigh, {FORMS}",
             )
-        damping = _rayleigh(damping["rayleigh"])
-    if isinstance(damping, Rayleigh):
-        ratios = damping.ratios(frequencies())
-        for mode, ratio in enumerate(ratios, start=1):
-            if ratio >= 1.0:
-                raise ValueError(
-                    f"damping = {damping}: is {ratio:.3g} of critical in mode {mode}; must be from "
-                    "0 to below 1 in every included mode"
-                )
-        return ratios.tolist(), None
+        return _rayleigh(value["rayleigh"], f"{place.name} rayleigh")
+    if isinstance(value, Rayleigh):
+        return value
+    if not isinstance(value, np.ndarray) and is_list(value):
+        value = items(place.name, value)
     try:
-        dimensions = np.ndim(damping)  # type: ignore[arg-type]
+        dimensions = np.ndim(value)  # type: ignore[arg-type]
     except Exception:  # rows of different lengths, or an object that says that it is an array
         dimensions = 3
     if dimensions < 2:
-        return numbers("damping", damping), None
+        return numbers(place.name, value)
     if dimensions == 2:
-        return [], array("damping", damping)
-    raise ValueError(
-        f"damping = {shown(damping)}: must be a ratio, a list of ratios, a square matrix C or "
-        "Rayleigh(alpha, beta)"
+        return array(place.name, value)
+    raise place.wrong(
+        value, "a ratio, a list of ratios, a square matrix C or Rayleigh(alpha, beta)"
     )
 
 
-def plain_damping(damping: Damping) -> object:
-    """What `resolved` takes, as a case file writes it."""
-    if isinstance(damping, Mapping):
-        damping = _rayleigh(damping["rayleigh"])
+def resolved(
+    damping: Rayleigh | list[float] | Array, frequencies: Callable[[], Array]
+) -> tuple[list[float], Array | None]:
+    """The ratios, or the matrix C; `frequencies` [Hz] are those of the included modes."""
+    if isinstance(damping, np.ndarray):
+        return [], damping
+    if isinstance(damping, list):
+        return damping, None
+    ratios = damping.ratios(frequencies())
+    for mode, ratio in enumerate(ratios, start=1):
+        if ratio >= 1.0:
+            raise ValueError(
+                f"damping = {damping}: is {ratio:.3g} of critical in mode {mode}; must be from "
+                "0 to below 1 in every included mode"
+            )
+    return ratios.tolist(), None
+
+
+def plain_damping(damping: Rayleigh | list[float] | Array) -> object:
+    """What `damping_of` takes, as a case file writes it."""
     if isinstance(damping, Rayleigh):
         return {"rayleigh": [damping.alpha, damping.beta]}
-    with np.errstate(over="ignore"):
-        values = np.asarray(damping, dtype=np.float64)
-    return values.item() if values.size == 1 and values.ndim < 2 else values.tolist()
+    if isinstance(damping, np.ndarray):
+        return damping.tolist()
+    return damping[0] if len(damping) == 1 else damping
 
 
 def in_words(plain: Any, frequencies: ArrayLike) -> str:
     """How much damping there is, of `plain_damping` and the frequencies of the modes [Hz]."""
     if isinstance(plain, Mapping):
-        rayleigh = _rayleigh(plain["rayleigh"])
+        rayleigh = Rayleigh(*plain["rayleigh"])
         found = ", ".join(f"{100.0 * ratio:.3g}" for ratio in rayleigh.ratios(frequencies))
         return (
             f"Rayleigh alpha {rayleigh.alpha:.4g} /s, beta {rayleigh.beta:.4g} s: {found} % of "
@@ -153,10 +167,9 @@ def in_words(plain: Any, frequencies: ArrayLike) -> str:
     return f"{', '.join(percent)} % of critical{' in each mode' if values.ndim == 0 else ''}"
 
 
-def _rayleigh(value: object) -> Rayleigh:
+def _rayleigh(value: object, key: str) -> Rayleigh:
     """From a pair or a table."""
-    if isinstance(value, Mapping):
-        if sorted(map(str, value)) != ["alpha", "beta"]:
-            raise ValueError(f"damping rayleigh = {shown(value)}: must be {FORMS}")
-        return Rayleigh(**value)
-    return Rayleigh(*pair("damping rayleigh", value, f"a pair, {FORMS}"))
+    if not isinstance(value, Mapping):
+        return Rayleigh(*pair(key, value, f"a pair, {FORMS}"))
+    with within(f"{key} = {shown(value)}: must be {FORMS}"):
+        return Maker(Rayleigh).build(value, Place())

@@ -1,239 +1,599 @@
-"""Many crossings of one bridge: random roads, speeds, vehicles, side by side on all cores."""
+"""What an ensemble of crossings gives: extremes of every sample, and what is made of them."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Mapping, Sequence
-from typing import TypeAlias
+from collections.abc import Sequence
+from functools import cached_property
+from numbers import Integral
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import NDArray
 
-from spanwise import _core
-from spanwise._asked import recipe_of
-from spanwise._checks import count, shown
-from spanwise._conditions import Recovery
-from spanwise._events import core_passage, core_road, is_simple, speeds_by_kind
-from spanwise._keys import suggesting
-from spanwise._progress import Bar
-from spanwise._recipe import Quantity, cores
+from spanwise._checks import file_path, is_list, items, named, shown, whole
+from spanwise._conditions import masked
+from spanwise._door import view
+from spanwise._plan import Plan
+from spanwise._plan_of_arguments import all_quantities
+from spanwise._plausible import doubts_of_roads
+from spanwise._renamed import Renamed, renamed
 from spanwise._rows import Rows
-from spanwise._warnings import PlausibilityWarning, warn
-from spanwise._wheels import GRAVITY
-from spanwise.bridge import Bridge
-from spanwise.damping import Damping
-from spanwise.population import Ensemble
-from spanwise.roads import Road
-from spanwise.traffic import Drive, Passage, core_drive
-from spanwise.vehicles import AnyVehicle
+from spanwise._shown import many
+from spanwise._value import frozen
+from spanwise.extremes import Array, SampleExtremes, When, governing
+from spanwise.impact_factors import ByName
+from spanwise.quantities import RESPONSES, Axis, Response, factors, parts, telling
+from spanwise.runs import Run
+from spanwise.samples import BodyAccelerations, Failure, SampleContactLoss
 
-Event: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from spanwise.plotting import EnsemblePlot
+
+By: TypeAlias = Literal["sample", "section", "support", "clamp", "axle"]
+
+#: Most memory that the histories of some samples may take [bytes].
+MOST_BYTES = 4 * 2**30
 
 
-@suggesting
-def ensemble(
-    bridge: Bridge,
-    vehicle: Event | Sequence[AnyVehicle] | Sequence[Sequence[Passage]],
-    *,
-    samples: int,
-    seed: int = 0,
-    first: int = 0,
-    speed: ArrayLike | None = None,
-    road: Road | None = None,
-    own_roads: bool = True,
-    kind: ArrayLike | None = None,
-    factors: Mapping[str, ArrayLike] | None = None,
-    values: Mapping[str, ArrayLike] | None = None,
-    modes: int | None = None,
-    drive: Drive = "constant-speed",
-    damping: Damping | None = None,
-    approach: float | None = None,
-    ramp: float | None = None,
-    tail: float | None = None,
-    sections: Sequence[float] | None = None,
-    quantities: Sequence[Quantity] | None = None,
-    recovery: Recovery = "force-summation",
-    advance: float | None = None,
-    step: float | None = None,
-    beta: float = 1.0 / 6.0,
-    gravity: float = GRAVITY,
-    lift_off: bool = True,
-    mask: float = 0.05,
-    threads: int | None = None,
-    progress: Callable[[int, int], object] | bool | None = None,
-) -> Ensemble:
-    """Drive vehicles over a bridge many times, each time on a road of its own.
+class Ensemble:
+    """The result of many crossings of one bridge, one row for each sample.
 
-    Each sample is a crossing as by `cross`, of which the extremes are kept. What a sample comes to
-    depends on the arguments, `seed` and its own number alone, to the bit: not on the number of
-    threads, on the processor, or on which other samples are computed with it.
-
-    Parameters
+    Attributes
     ----------
     bridge : Bridge
         The bridge.
-    vehicle : Vehicle, ForceTrain, MovingMasses, Passage or sequence
-        Who crosses, as for `cross`: a vehicle, or a list of `Passage`, several vehicles at once.
-        Or kinds of event, of which sample i is number ``kind[i]``: a list of vehicles, or a list of
-        lists of `Passage`.
     samples : int
-        How many, at least 1.
-    seed : int, optional
-        Seed of the random roads.
-    first : int, optional
-        Number of the first sample; the others follow. Samples 1000 and on of a seed go on where
-        samples 0 to 999 ended.
-    speed : float or array_like, optional
-        Speed at the start [m/s]: one for all, one for each sample, shape (samples,), or one for
-        each vehicle of it, shape (samples, vehicles). Needed as for `cross`, and not allowed where
-        every passage has its own.
-    road : Road, optional
-        The road; smooth by default. An `ISO8608` road, alone or in a sum, is drawn anew for each
-        sample from `seed` and the number of the sample, in place of its own seed and sample; the
-        rest of the sum is the same for all.
-    own_roads : bool, optional
-        Whether random roads are drawn anew (default) or are the same for all, as they stand.
-    kind : array_like of int, optional
-        Which kind of event each sample is, from 0, shape (samples,); needed if there are several.
-    factors : mapping, optional
-        What varies: factors by name, each a number, one for each sample, shape (samples,), or one
-        for each of its bodies or axles, front first, shape (samples, parts). The names are
-        ``body_mass`` (loads or masses of a train), ``pitch_inertia``, ``tyre_stiffness``,
-        ``tyre_damping``, ``suspension_stiffness``, ``suspension_damping``, ``friction_limit``
-        (which takes the initial friction along), ``initial_friction`` (no factor, but from -1 to 1
-        in friction limits), ``bridge_stiffness`` (springs included) and ``bridge_damping``. One
-        number for a sample varies springs and dampers between bodies along with the suspensions.
-    values : mapping, optional
-        The same in absolute values, in the unit of the attribute of `Vehicle`, `Body` or `Axle`:
-        masses [kg] (loads [N] of a train of forces), inertias [kg m2], stiffnesses [N/m], dampings
-        [N s/m], friction [N]. They must not be multiples of nothing. Not for the bridge.
-    modes : int, optional
-        Number of natural modes included, as for `cross`.
-    drive, damping, approach, ramp, tail, recovery, beta, gravity, lift_off
-        As for `cross`; by default the tail of each sample is as long as it needs, for the
-        quantities and sections looked at.
-    sections : sequence of float, optional
-        Where to look [m], ascending, as for `cross`.
-    quantities : sequence of str, optional
-        What to look at: ``"deflection"``, ``"moment"``, ``"shear"`` (on both sides of a section),
-        ``"reactions"``, ``"clamp_moments"``; by default all there are.
-    advance : float, optional
-        Longest way per step [m], for vehicles alone at constant speed from the left, in place of
-        `step`. Where a sample needs shorter steps to be stable, by its speed and stiffness, they
-        are halved; whether they are short enough to be accurate is left to the caller.
-    step : float, optional
-        Longest time step [s]; by default as for `cross`. Vehicles alone at constant speed from the
-        left never take longer ways than they do by default: for that give `advance`.
-    mask : float, optional
-        Impact factors are not given where the static value is at most this fraction of the largest
-        among the sections.
-    threads : int, optional
-        Threads at most; by default as many as the processor has. More than four to a processor are
-        not started, nor more than the system allows. Results do not depend on them.
-    progress : callable or bool, optional
-        Called with the number of samples done and that of all, at most ten times a second and at
-        the end; what it raises ends the computation. Or True for a line on standard error: over
-        itself on a terminal, elsewhere a line a minute.
+        How many.
+    first, seed : int
+        Number of the first sample, and the seed: with its number they make a sample what it is.
+    speed : float or ndarray or None
+        Speeds as given, or as passages have their own [m/s].
+    sections : ndarray, shape (section,)
+        Where responses are looked at [m].
+    supports : ndarray, shape (support,)
+        Positions of the supports [m].
+    frequencies : ndarray, shape (mode,)
+        Natural frequencies of the included modes of the bridge as given [Hz]: no factor on its
+        stiffness is in them.
+    quantities : tuple of str
+        What was looked at.
+    failures : tuple of Failure
+        Samples without a result.
+    digests : ndarray of uint64, shape (sample,)
+        Fingerprint of all numbers of each sample.
+    hash : str
+        Fingerprint of the whole, 16 hexadecimal digits: the same for the same ensemble on every
+        machine, whatever its instruction set and however many threads.
+    isa : str
+        Instruction set used.
+    threads : int
+        Threads at most.
+    elapsed : float
+        Time that it took [s].
+    shares_geometry : bool
+        Whether the samples were marched side by side; if not, each was a crossing of its own, which
+        takes 15 to 20 times as long.
+    """
 
-    Returns
-    -------
-    Ensemble
-        Extremes, impact factors and axle loads of every sample.
+    def __init__(self, plan: Plan, rows: Rows) -> None:
+        self._plan, self._rows = plan, rows
+        self.bridge, self.quantities = plan.bridge, plan.quantities
+        self.samples, self.first, self.seed = plan.samples, plan.first, plan.seed
+        self.speed = plan.speeds.given
+        self.sections: Array = rows.sections
+        self.frequencies: Array = frozen(rows.omega / (2.0 * np.pi))
+        self.supports: Array = frozen(np.array([x for x, _ in self.bridge.supports]))
+        self.failures = tuple(
+            Failure(self.first + row, step, cause, row) for row, step, cause in rows.failures
+        )
+        self.digests: NDArray[np.uint64] = rows.digests
+        self.hash = rows.hash
+        self.isa, self.threads, self.elapsed = rows.isa, rows.threads, rows.elapsed
+        self.shares_geometry = rows.shares
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickled as its plan and its rows."""
+        return Ensemble, (self._plan, self._rows)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same was asked, to the same results, bit for bit; not how fast, and where."""
+        if type(other) is not Ensemble:
+            return NotImplemented
+        return self._plan == other._plan and self._rows == other._rows
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @classmethod
+    def read(cls, path: str | Path) -> Ensemble:
+        """What `to_npz` wrote, whole: `run` and `==` included.
+
+        Parameters
+        ----------
+        path : str or Path
+            The archive.
+
+        Raises
+        ------
+        OSError
+            If there is no such file, or it cannot be read.
+        ValueError
+            If it is not an archive of an ensemble, or a value in it is not allowed.
+        """
+        return view("_ensemble_files.read_npz")(file_path("path", path))
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """All that was warned of in these crossings and their measured roads, but damping."""
+        plan = self._plan
+        return (*doubts_of_roads(plan.roads), *plan.idle(), *plan.doubts())
+
+    @property
+    def rate(self) -> float:
+        """Crossings per second."""
+        return self.samples / self.elapsed
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """Keyword arguments of `ensemble` that compute it again, defaults filled in."""
+        return self._plan.settings
+
+    @property
+    def responses(self) -> list[Response]:
+        """What was looked at, and axle loads."""
+        return [each for each in RESPONSES.values() if self._looks_at(each)]
+
+    def _looks_at(self, of: Response) -> bool:
+        return of.axis == "axle" or of.name in self.quantities
+
+    def places(self, axis: Axis) -> Array:
+        """Positions of the sections, supports or clamps [m], or numbers of the axles from 1."""
+        return {
+            "section": self.sections,
+            "support": self.supports,
+            "clamp": self.bridge.clamps,
+            "axle": np.arange(1.0, self._rows.axles + 1.0),
+        }[axis]
+
+    def _extremes(self, name: str) -> SampleExtremes:
+        """Of one part of a response, or of the axle loads."""
+        rows, of = self._rows, parts()[name]
+        if of.axis == "axle":
+            largest, width = rows.columns[name][0], rows.axles
+            smallest = largest + width
+            statics = self.static_axle_loads, self.static_axle_loads
+        else:
+            largest, width = rows.place(name)
+            smallest = largest + rows.responses
+            statics = rows.frozen_statics(largest, width), rows.frozen_statics(smallest, width)
+        return SampleExtremes(
+            self.places(of.axis),
+            rows.numbers[:, largest : largest + width],
+            rows.numbers[:, smallest : smallest + width],
+            *statics,
+            lambda: self._when(largest, width),
+            lambda: self._when(smallest, width),
+        )
+
+    @property
+    def _not_looked_at(self) -> str:
+        have = ", ".join(self.quantities)
+        return f"was not looked at; this ensemble has {have} (give quantities)"
+
+    def _when(self, start: int, width: int) -> When:
+        """Times and positions of some of the extremes, counted through responses and loads."""
+        return self._rows.when(start, width, self._plan.front_speeds)
+
+    @cached_property
+    def _envelopes(self) -> dict[str, SampleExtremes]:
+        """Those that have been asked for."""
+        return {}
+
+    @telling
+    def envelope(self, quantity: str) -> SampleExtremes:
+        """Extremes of a response in every sample, as `Run.envelope` has them of one crossing.
+
+        Parameters
+        ----------
+        quantity : str
+            The response, signed as in `Run`; shears on both sides of the sections together, or on
+            one; axle loads until the last axle has left the bridge, the approach too, of all
+            vehicles in order:
+
+            {parts}
+
+        Returns
+        -------
+        SampleExtremes
+            ``.max`` and ``.min`` with their ``_time`` [s] and ``_position`` [m] (``.max_time``,
+            ``.max_position``, ...), all of shape (samples, sections), and ``.static_max``,
+            ``.static_min``, of shape (sections,) where all samples share them. Supports, clamps or
+            axles stand in the place of sections where they have the quantity. ``.max`` and
+            ``.max_time`` are arrays here, where a run has ``.max.value`` and ``.max.time``.
+
+        Raises
+        ------
+        ValueError
+            If there is no such quantity, or it was not looked at.
+        """
+        name = named("quantity", quantity, parts(whole=True))
+        of = parts(whole=True)[name]
+        if not self._looks_at(of):
+            raise ValueError(f'quantity = "{name}": {self._not_looked_at}')
+        if name not in self._envelopes:
+            if of.sided and name == of.name:
+                left, right = map(self.envelope, of.parts)
+                self._envelopes[name] = left.merged(right)
+            else:
+                self._envelopes[name] = self._extremes(name)
+        return self._envelopes[name]
+
+    def __getattr__(self, name: str) -> Any:
+        """Attributes that have other names now; those of `Run` alike are histories."""
+        of = parts(whole=True).get(name)
+        if of is not None:
+            renamed(f"Ensemble.{name}", f'Ensemble.envelope("{name}")')
+            if not self._looks_at(of):
+                raise AttributeError(f"{name}: {self._not_looked_at}")
+            return self.envelope(name)
+        if name in ("lift_offs", "time_off_road"):
+            new = "count" if name == "lift_offs" else "total"
+            renamed(f"Ensemble.{name}", f"Ensemble.contact_loss.{new}")
+            return getattr(self.contact_loss, new)
+        raise AttributeError(f"'Ensemble' object has no attribute {name!r}")
+
+    @cached_property
+    def static_axle_loads(self) -> Array:
+        """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
+        return frozen(self._plan.static_loads())
+
+    @property
+    def tail(self) -> Array:
+        """Free vibration kept after the last axle had left, or stood [s], shape (sample,)."""
+        return self._rows.block("tail")[:, 0]
+
+    @property
+    def growth(self) -> Array:
+        """How far at most free vibration after the end can exceed an extreme, shape (sample,).
+
+        As `Run.growth`: in parts of the largest of its kind along the bridge, of the extreme that
+        can grow most. Zero where none can by more than a hundredth of itself and a thousandth of
+        the largest; NaN where a vehicle stands on the bridge, and of samples that failed.
+        """
+        return self._rows.block("growth")[:, 0]
+
+    def _growing(self, row: int) -> str:
+        """The extreme of a sample that can grow most, in words."""
+        place, smallest = divmod(int(self._rows.block("growing")[row, 0]), 2)
+        for name in self._rows.widths:
+            start, width = self._rows.place(name)
+            if place < start + width:
+                break
+        x = self.places(parts()[name].axis)[place - start]
+        side = "smallest" if smallest else "largest"
+        return f"{side} {name.replace('_', ' ')} at x = {x:.3f} m"
+
+    off_road = Renamed("contact_loss")
+    load_coefficients = Renamed("dynamic_load_coefficients")
+
+    @property
+    def dynamic_load_coefficients(self) -> Array:
+        """How much the axle loads vary about their static values [-], shape (sample, axle).
+
+        The root mean square of P - P_st by P_st, over the steps from the first with an axle of the
+        same vehicle on the bridge to that with which the last of them leaves it:
+        `Run.dynamic_load_coefficients`, bit for bit.
+        """
+        return self._rows.block("load_coefficients")
+
+    @property
+    def contact_loss(self) -> SampleContactLoss:
+        """How often and how long the wheels were off the road, by sample and axle."""
+        instants, total = self._rows.instants, self._rows.block("time_off_road")
+        count = instants[:, instants.shape[1] - total.shape[1] :].astype(np.int64)
+        return SampleContactLoss(count, total)
+
+    @property
+    def body_accelerations(self) -> BodyAccelerations:
+        """Vertical accelerations of the bodies, by sample and body [m/s2]."""
+        return BodyAccelerations(self._rows.block("accelerations"), self._rows.block("vibrations"))
+
+    @cached_property
+    def impact_factors(self) -> SampleFactors:
+        """Impact factors of every sample: dynamic extreme by static extreme.
+
+        As `Run.impact_factors`, with one row for each sample: ``impact_factors.sagging`` is of
+        shape (sample, section).
+        """
+        return self.ratios()
+
+    def ratios(self, mask: float | None = None) -> SampleFactors:
+        """Impact factors with another mask.
+
+        Parameters
+        ----------
+        mask : float, optional
+            Give none where the static value is at most this fraction of the largest along the
+            bridge; by default as the ensemble was told.
+
+        Returns
+        -------
+        SampleFactors
+            NaN where masked, and of samples that failed.
+        """
+        least = self._plan.conditions.mask if mask is None else masked(mask)
+        return SampleFactors(self, least)
+
+    def run(self, sample: int) -> Run:
+        """A sample by a crossing of its own, with all histories.
+
+        Parameters
+        ----------
+        sample : int
+            Its row, from 0; its number less `first`.
+
+        Returns
+        -------
+        Run
+            The same extremes, bit for bit; to rounding where the stiffness or the damping of the
+            bridge is varied, which is then another bridge.
+
+        Raises
+        ------
+        IndexError
+            If there is no such sample.
+        ValueError
+            If the stiffness varies of a bridge given by its flexibility or its modes.
+        RuntimeError
+            If the sample is one that failed.
+        """
+        return self._run(self._row("sample", sample), None)
+
+    def _run(self, row: int, tail: float | None) -> Run:
+        """The sample of a row, with a tail so long if that of the ensemble was not given."""
+        for each in self.failures:
+            if each.row == row:
+                step = "" if each.step is None else f" in step {each.step}"
+                raise RuntimeError(
+                    f"row {row}: sample number {each.sample} failed{step}: {each.cause}"
+                )
+        if tail is None and len(self.quantities) < len(all_quantities(self.bridge)):
+            # As long as it was for what was looked at.
+            tail = float(self.tail[row])
+        return self._plan.run(row, self._rows, tail)
+
+    def _row(self, key: str, given: object) -> int:
+        """A row that there is."""
+        row = whole(key, given)
+        if 0 <= row < self.samples:
+            return row
+        of_number = row - self.first
+        there = 0 <= of_number < self.samples
+        hint = f" (sample number {row} is row {of_number})" if there else ""
+        raise IndexError(f"row {shown(row)}: must be from 0 to below {self.samples}{hint}")
+
+    def histories(self, quantity: str, samples: int | Sequence[int]) -> Array:
+        """Histories of a response, by a crossing of its own for each of some samples.
+
+        Parameters
+        ----------
+        quantity : str
+            The response, as for `envelope`, of shears one side.
+        samples : int or sequence of int
+            Their rows, from 0, or the row of one.
+
+        Returns
+        -------
+        ndarray, shape (samples, time, section)
+            Values in SI units; times are `Run.time` of `run`. Where tails were not given, all are
+            as long as the longest of them.
+
+        Raises
+        ------
+        IndexError
+            If there is no such sample.
+        ValueError
+            If they differ in their number of instants, or would take too much memory.
+        RuntimeError
+            If one of them is one that failed.
+        """
+        quantity = named("quantity", quantity, parts())
+        if is_list(samples):
+            rows = [
+                self._row(f"samples[{i}]", each) for i, each in enumerate(items("samples", samples))
+            ]
+        elif isinstance(samples, Integral):
+            rows = [self._row("samples", samples)]
+        else:
+            raise ValueError(f"samples = {shown(samples)}: must be a row or a list of rows")
+        found: Array | None = None
+        tail = max((float(self.tail[row]) for row in rows), default=0.0)
+        for i, row in enumerate(rows):
+            values: Array = getattr(self._run(row, tail), quantity)
+            if found is None:
+                size = len(rows) * values.nbytes
+                if size > MOST_BYTES:
+                    raise ValueError(
+                        f"samples = {len(rows)} samples: their histories would take "
+                        f"{size / 1e9:.1f} GB, more than {MOST_BYTES / 1e9:.1f}; ask for fewer"
+                    )
+                found = np.empty((len(rows), *values.shape))
+            if values.shape != found.shape[1:]:
+                raise ValueError(
+                    f"samples[{i}] = {row}: has {len(values)} instants, not {found.shape[1]} as "
+                    "those before it; ask for samples of different speeds or steps by themselves"
+                )
+            found[i] = values
+        return np.empty((0, 0, 0)) if found is None else found
+
+    def summary(self) -> str:
+        """What crossed what, percentiles of extremes and impact factors, and failures, as text.
+
+        Impact factors are those of one section, where the static value is largest; of sections
+        alike in that, as on a symmetric bridge, the one with the larger dynamic value (medians).
+        Then of each sample the largest dynamic value anywhere by the largest static one anywhere.
+        """
+        return view("_ensemble_summary.summary")(self)
+
+    def _repr_html_(self) -> str:
+        return view("_ensemble_summary.page")(self)
+
+    def __repr__(self) -> str:
+        failed = f", {len(self.failures)} failed" if self.failures else ""
+        return (
+            f"Ensemble({many(self.samples, 'sample')} from {self.first} of seed "
+            f"{self.seed}{failed}, {many(len(self.sections), 'section')}, "
+            f"{', '.join(self.quantities)}; hash {self.hash})"
+        )
+
+    def to_npz(self, path: str | Path) -> None:
+        """Write all extremes, fingerprints and the settings to a NumPy archive.
+
+        The file has the name that is given, with ``.npz`` or without. Names in it are those of the
+        attributes, such as ``moment_max`` and ``axle_loads_min_time``; ``settings`` is JSON text.
+        Read it with `read`, or with ``numpy.load(path)``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; none is left then.
+        """
+        view("_ensemble_files.write_npz")(self, file_path("path", path))
+
+    def to_pandas(self, by: By = "sample") -> pd.DataFrame:
+        """A frame with one row for each sample; needs the extra ``spanwise[pandas]``.
+
+        Parameters
+        ----------
+        by : {"sample", "section", "support", "clamp", "axle"}, optional
+            One row for each sample (default), or for each sample and section, support, clamp or
+            axle.
+
+        Returns
+        -------
+        DataFrame
+            Rows are named by the numbers of the samples. By sample: ``kind`` where there are
+            several, ``speed`` [m/s] and factors (one column each, or one for each part, from 1),
+            ``failed``, the largest and the smallest value of each quantity along the bridge,
+            ``impact_factor_...`` at the section where the static value is largest (where that is
+            stands in ``attrs["governing"]`` [m]), and by axle and body the load coefficients, lift
+            offs, times off the road and accelerations. Else the extremes of the quantities that
+            have such places, with their times and positions, the static ones, and the impact
+            factors there. Of samples that failed, numbers are NaN.
+
+        Raises
+        ------
+        ValueError
+            If there are no such places, or what is there was not looked at.
+        ImportError
+            If pandas is missing, naming the extra that brings it.
+        """
+        return view("_ensemble_tables.frame")(self, by)
+
+    def to_parquet(self, path: str | Path, by: By = "sample") -> None:
+        """Write `to_pandas` to a Parquet file of this name; needs the extra ``spanwise[parquet]``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
+        view("_ensemble_tables.write_parquet")(self, file_path("path", path), by)
+
+    def to_csv(self, path: str | Path, by: By = "sample") -> None:
+        """Write `to_pandas` with all digits to a CSV file of this name; needs ``spanwise[pandas]``.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
+        view("_ensemble_tables.write_csv")(self, file_path("path", path), by)
+
+    @property
+    def plot(self) -> EnsemblePlot:
+        """Figures of the ensemble; needs the extra ``spanwise[plot]``."""
+        return view("plotting.EnsemblePlot")(self)
+
+
+@telling
+class SampleFactors(ByName):
+    """Impact factors of every sample, as `ImpactFactors` has them of one crossing.
+
+    Each kind is an attribute, an array of shape (sample, section), (sample, support) or
+    (sample, axle); NaN where masked, and of samples that failed:
+
+    {factors}
+
+    They are worked out when asked for.
+
+    Attributes
+    ----------
+    sections, supports : ndarray
+        Positions [m].
+    mask : float
+        Factors are NaN where the static value is at most this fraction of the largest of its kind.
+    ratio : str
+        ``"extremes"``: dynamic by static extreme, which may occur at different times.
 
     Raises
     ------
     ValueError
-        If a value is not allowed, naming it and what is.
-    RuntimeError
-        If the numerics of the bridge fail, or if the system starts no thread. Samples that fail are
-        among `Ensemble.failures`.
-
-    Warns
-    -----
-    DampingWarning
-        If `damping` is not given.
-    PlausibilityWarning
-        As for `cross`, of vehicles as given and of those with the smallest and the largest of each
-        factor on masses and springs.
-    UserWarning
-        If what a factor multiplies is 0 in all vehicles, or is the damping of a bridge without.
-
-    Notes
-    -----
-    Vehicles that cross alone, at constant speed and from the left, take equal steps in space, so
-    that all samples of a kind share where axles stand and what they do to the bridge, whatever
-    their speed, road, masses and springs; they march side by side. All others are crossings of
-    their own, which takes 15 to 20 times as long for each.
-
-    There may be as many kinds of event as samples: memory is taken for the results and, on each
-    thread, for one kind at a time. A kind of a few samples takes about as long for each as `cross`.
-
-    Where steps in time would not be the same for all samples, the step of each is that of the kind
-    halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable
-    ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
+        If a response was not looked at.
     """
-    recipe, speeds = recipe_of(
-        bridge,
-        vehicle,
-        samples=samples,
-        seed=seed,
-        first=first,
-        speed=speed,
-        road=road,
-        own_roads=own_roads,
-        kind=kind,
-        factors=factors,
-        values=values,
-        modes=modes,
-        drive=drive,
-        damping=damping,
-        approach=approach,
-        ramp=ramp,
-        tail=tail,
-        sections=sections,
-        quantities=quantities,
-        recovery=recovery,
-        advance=advance,
-        step=step,
-        beta=beta,
-        gravity=gravity,
-        lift_off=lift_off,
-        mask=mask,
-    )
-    conditions, events = recipe.conditions, recipe.events
-    for remark in recipe.idle():
-        warn(remark)
-    for doubt in recipe.doubts():
-        warn(doubt, PlausibilityWarning)
-    simple = all(is_simple(event, recipe.drive) for event in events)
-    column = speeds
-    if simple:
-        column = speeds_by_kind(speeds, events, recipe.kinds, recipe.samples)
-    if not (progress is None or isinstance(progress, bool) or callable(progress)):
-        raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
-    if progress is True:
-        listener: Bar | Callable[[int, int], object] | None = Bar(sys.stderr)
-    else:
-        listener = progress or None
-    try:
-        core = _core.ensemble(
-            bridge._core,
-            [[core_passage(each, own_speed=not simple) for each in event] for event in events],
-            drive=core_drive(recipe.drive),
-            road=recipe.road._core,
-            own_road=core_road(recipe.own, recipe.seed),
-            advance=recipe.advance,
-            quantities=cores(recipe.quantities),
-            first=recipe.first,
-            count=recipe.samples,
-            kind_of=recipe.kinds,
-            speeds=column.column,
-            factors=[each.core for each in recipe.factors],
-            threads=None if threads is None else count("threads", threads),
-            progress=listener,
-            **conditions.core,
-        )
-    finally:
-        # The line ends also where the computation does not.
-        if isinstance(listener, Bar):
-            listener.close()
-    return Ensemble(recipe, Rows.of(core))
+
+    ratio: Final = "extremes"
+
+    def __init__(self, ensemble: Ensemble, mask: float) -> None:
+        self._ensemble, self.mask = ensemble, mask
+        self.sections, self.supports = ensemble.sections, ensemble.supports
+
+    @property
+    def names(self) -> list[str]:
+        """Kinds of factors there are of what was looked at."""
+        return [name for name, (of, _) in factors().items() if self._ensemble._looks_at(of)]
+
+    def governing(self, name: str) -> int:
+        """Number of the section, support or axle where the static value is largest.
+
+        Of those alike, of the one with the larger dynamic value, by their medians.
+        """
+        of, factor = factors()[name]
+        return governing(*self._ensemble.envelope(of.name).of(factor.sense))
+
+    def _of(self, name: str) -> Array:
+        of, factor = factors()[name]
+        if not self._ensemble._looks_at(of):
+            what = "" if of.name == name else f"{of.name} "
+            raise ValueError(f'quantity = "{name}": {what}{self._ensemble._not_looked_at}')
+        return self._ensemble.envelope(of.name).factors(factor.sense, self.mask)
+
+    def __call__(self, quantity: str, mask: float | None = None) -> Array:
+        """As it was before: a method of the ensemble."""
+        found = (self if mask is None else self._ensemble.ratios(mask))[quantity]
+        new = "impact_factors" if mask is None else f"ratios(mask={mask})"
+        renamed(f'Ensemble.impact_factors("{quantity}")', f"Ensemble.{new}.{quantity}")
+        return found
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same factors of equal ensembles."""
+        if type(other) is not SampleFactors:
+            return NotImplemented
+        return self.mask == other.mask and self._ensemble == other._ensemble
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"SampleFactors({self._ensemble.samples} samples, {len(self.sections)} sections)"
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """The function of the same name, where it was before."""
+        if name == "ensemble":
+            renamed("spanwise.ensembles.ensemble", "spanwise.study.ensemble")
+            return view("study.ensemble")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

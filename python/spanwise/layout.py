@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias, TypeVar
 
-from spanwise._checks import Numbers, count, items, number, numbers, pair, shown
-from spanwise._keys import suggestion
+from spanwise._build import Maker, Place, within
+from spanwise._checks import Numbers, count, items, number, numbers, one_of, pair, shown
 from spanwise._value import Hashed
+
+T = TypeVar("T")
+
+#: Springs of rigid supports by their kind [N/m, N m/rad].
+RIGID: Final = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
 
 #: Pieces into which a stretch of linear EI is cut unless told otherwise.
 TAPER_PIECES: Final = 32
@@ -42,8 +47,8 @@ class Support:
     @property
     def kind(self) -> str:
         """``"pinned"``, ``"clamped"`` or, with a spring, ``"elastic"``."""
-        rigid = {(math.inf, 0.0): "pinned", (math.inf, math.inf): "clamped"}
-        return rigid.get((self.vertical, self.rotation), "elastic")
+        springs = (self.vertical, self.rotation)
+        return next((kind for kind, each in RIGID.items() if each == springs), "elastic")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -81,9 +86,7 @@ AnySupport: TypeAlias = tuple[float, str] | Sequence[Any] | Support | Mapping[st
 def along(key: str, value: object) -> tuple[list[float] | None, list[float], int]:
     """Breakpoints or None, values, pieces."""
     if isinstance(value, Mapping):
-        keys = ("at", "values", "pieces")
-        _check_keys(key, value, keys, keys[:2], "a number, one for each span,")
-        value = Along(**value)
+        value = _of_table(Along, key, value, "a number, one for each span,")
     if isinstance(value, Along):
         pieces = count(f"{key} pieces", value.pieces)
         return numbers(f"{key} at", value.at), numbers(f"{key} values", value.values), pieces
@@ -96,25 +99,20 @@ def along_argument(given: tuple[list[float] | None, list[float], int]) -> Any:
     return values if at is None else {"at": at, "values": values, "pieces": pieces}
 
 
-def support(key: str, value: object) -> tuple[float, float, float]:
-    """Position [m] and springs [N/m, N m/rad] of a support."""
+def support(key: str, value: object) -> Support:
+    """A support, of what is accepted for one."""
     if isinstance(value, Mapping):
-        keys = ("at", "vertical", "rotation")
-        _check_keys(key, value, keys, keys[:1], "a pair of position and kind")
-        springs = {name: _stiffness(f"{key} {name}", each) for name, each in value.items()}
-        value = Support(**springs)
+        return _of_table(Support, key, value, "a pair of position and kind")
     if isinstance(value, Support):
-        return value.at, value.vertical, value.rotation
+        return value
     other = "or a Support or table with at, vertical and rotation"
     at, kind = pair(key, value, f"a pair of position and kind, {other}")
-    kinds = {"pinned": (math.inf, 0.0), "clamped": (math.inf, math.inf)}
-    if not isinstance(kind, str) or kind not in kinds:
-        raise ValueError(f"{key} = {shown(kind)}: must be pinned or clamped")
-    return number(f"{key} position", at), *kinds[kind]
+    vertical, rotation = RIGID[one_of(key, kind, [*RIGID])]
+    return Support(at=number(f"{key} position", at), vertical=vertical, rotation=rotation)
 
 
-def supports(key: str, value: object) -> list[tuple[float, float, float]]:
-    """Positions [m] and springs [N/m, N m/rad] of the supports."""
+def supports(key: str, value: object) -> list[Support]:
+    """The supports, of what is accepted for them."""
     given = items(key, value, "a list of supports")
     return [support(f"{key}[{i}]", each) for i, each in enumerate(given)]
 
@@ -132,19 +130,9 @@ def _stiffness(key: str, value: object) -> float:
     return math.inf if isinstance(value, str) and value == "inf" else number(key, value)
 
 
-def _check_keys(
-    key: str,
-    table: Mapping[str, Any],
-    allowed: tuple[str, ...],
-    required: tuple[str, ...],
-    otherwise: str,
-) -> None:
-    """Refuse unknown and missing keys; `otherwise` is allowed in place of the table."""
-    wanted = (
-        f"{key} = {shown(dict(table))}: must be {otherwise} or a table with {', '.join(allowed)}"
-    )
-    for each in table:
-        if each not in allowed:
-            raise ValueError(f"{wanted}; unknown key {shown(each)}{suggestion(each, allowed)}")
-    if missing := [each for each in required if each not in table]:
-        raise ValueError(f"{wanted}; missing {', '.join(missing)}")
+def _of_table(kind: type[T], key: str, table: Mapping[str, Any], otherwise: str) -> T:
+    """What is made of a table, in place of which something else may be given."""
+    maker = Maker(kind)
+    allowed = f"must be {otherwise} or a table with {', '.join(maker.keys)}"
+    with within(f"{key} = {shown(dict(table))}: {allowed}"):
+        return maker.build(table, Place())

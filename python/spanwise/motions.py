@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._renamed import Renamed
 from spanwise._value import Value
 
 Array: TypeAlias = NDArray[np.float64]
@@ -71,8 +72,8 @@ class VehicleMotion(Value):
         Of the road under the axles, up [m], as they move the vehicle: faded in, averaged over the
         contact patch, and of a `Profile` off the least-squares line of the whole way, as heave,
         pitch and hops are too. Elevations as given are ``road.elevation(axle_positions)``.
-    suspension_shortenings : ndarray, shape (time, axle)
-        Since the static state [m].
+    suspension_travel : ndarray, shape (time, axle)
+        Shortening since the static state [m].
     friction : ndarray, shape (time, axle)
         Friction forces in the suspensions [N].
     stopped : float or None
@@ -86,9 +87,11 @@ class VehicleMotion(Value):
     acceleration: Array
     axle_positions: Array
     elevations: Array
-    suspension_shortenings: Array
+    suspension_travel: Array
     friction: Array
     stopped: float | None
+
+    suspension_shortenings = Renamed("suspension_travel")
 
     def __repr__(self) -> str:
         bodies, (instants, axles) = len(self.bodies), self.axle_positions.shape
@@ -153,7 +156,7 @@ class LiftOff:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class OffRoad(Value):
+class ContactLoss(Value):
     """How often and how long wheels were off the road, axle by axle.
 
     Attributes

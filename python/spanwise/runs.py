@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from functools import cached_property
-from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._checks import choice, named
+from spanwise._checks import choice
 from spanwise._computed import Computed
 from spanwise._conditions import masked
+from spanwise._door import view
 from spanwise._freevibration import Growth, growths
 from spanwise._plausible import doubts_of_roads
 from spanwise._remarks import remarks
+from spanwise._renamed import Renamed
 from spanwise._value import frozen, same
 from spanwise.bridge import Bridge
-from spanwise.motions import BodyMotion, LiftOff, ModalMotion, Motion, OffRoad, VehicleMotion
-from spanwise.responses import QUANTITIES, Envelope, Extremes, Quantity, Responses
+from spanwise.extremes import Envelope, Extremes
+from spanwise.impact_factors import DEFINITIONS, ImpactFactors
+from spanwise.motions import BodyMotion, ContactLoss, LiftOff, ModalMotion, Motion, VehicleMotion
+from spanwise.quantities import RESPONSES, Axis, Response, factors, response, telling, there_are
+from spanwise.responses import Responses
 from spanwise.roads import Road
-from spanwise.table import ImpactFactors
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
@@ -60,8 +63,6 @@ class Run(Responses):
         Static axle loads [N], of all vehicles in their order.
     static : Responses
         Responses to the static axle loads at the same positions.
-    load_coefficients : ndarray, shape (axle,)
-        Root mean square of each axle load about its static value, by that value [-].
     final_speed : float
         Speed of the first vehicle at the end [m/s].
     tail : float
@@ -76,14 +77,8 @@ class Run(Responses):
         none, NaN where a vehicle stands on the bridge.
     lift_offs : tuple of LiftOff
         Every time a wheel was off the road, on the approach too, until the last axle had left.
-    off_road : OffRoad
-        The same in numbers for each axle.
-    axles : list of tuple of int
-        Numbers of vehicle and axle, from 1, of each column by axle.
     steps : int
         Number of time steps.
-    warnings : tuple of str
-        All that was warned of in this crossing and its measured roads, but damping.
     """
 
     def __init__(
@@ -128,9 +123,18 @@ class Run(Responses):
 
     __hash__ = None
 
+    off_road = Renamed("contact_loss")
+    load_coefficients = Renamed("dynamic_load_coefficients")
+
     @property
     def _core(self) -> _core.Crossing:
         return self._computed.core
+
+    @property
+    def responses(self) -> list[Response]:
+        """What there is: all that the bridge knows, without a clamp no clamp moments."""
+        of_bridge = there_are(self.bridge.missing, clamps=len(self.bridge.clamps) > 0)
+        return [each for each in RESPONSES.values() if each in of_bridge or each.axis == "axle"]
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -147,6 +151,12 @@ class Run(Responses):
             for axle in range(len(passage.vehicle.axle_positions))
         ]
 
+    @property
+    def axle_names(self) -> list[str]:
+        """What the axles are called: by number, and by vehicle where there are several."""
+        several = len(self.passages) > 1
+        return [f"{f'vehicle {k} ' if several else ''}axle {axle}" for k, axle in self.axles]
+
     @cached_property
     def can_grow(self) -> tuple[Growth, ...]:
         """Extremes that free vibration after the end can exceed by more than a hundredth.
@@ -158,13 +168,13 @@ class Run(Responses):
         return tuple(growths(self))
 
     @cached_property
-    def off_road(self) -> OffRoad:
+    def contact_loss(self) -> ContactLoss:
         """How often and how long wheels were off the road, axle by axle."""
         by_axle = [
             [each.duration for each in self.lift_offs if each.axle == axle]
             for axle in range(1, len(self.axles) + 1)
         ]
-        return OffRoad(
+        return ContactLoss(
             count=np.array([len(each) for each in by_axle], dtype=np.int64),
             total=np.array([sum(each) for each in by_axle], dtype=np.float64),
             longest=np.array([max(each, default=0.0) for each in by_axle]),
@@ -181,7 +191,7 @@ class Run(Responses):
         return frozen(self._core.states("axle_loads"))
 
     @cached_property
-    def load_coefficients(self) -> Array:
+    def dynamic_load_coefficients(self) -> Array:
         """How much the axle loads vary about their static values [-], shape (axle,).
 
         The root mean square of P - P_st by P_st, over the steps from the first with an axle of the
@@ -196,10 +206,8 @@ class Run(Responses):
         """The motion of each vehicle."""
         by_axle = {
             "axle_positions": self._core.states("positions"),
-            **{
-                k: self._core.states(k)
-                for k in ("elevations", "suspension_shortenings", "friction")
-            },
+            **{k: self._core.states(k) for k in ("elevations", "friction")},
+            "suspension_travel": self._core.states("suspension_shortenings"),
         }
         motions, first = [], 0
         for number_, (passage, stopped) in enumerate(
@@ -250,6 +258,14 @@ class Run(Responses):
         way = x if passage.direction == "right" else self.bridge.length - x
         return np.stack([np.ones_like(way), way], axis=-1)
 
+    def stop(self, vehicle: int) -> tuple[float, Array] | None:
+        """When a vehicle, counted from 0, came to rest [s], and where its axles are then [m]."""
+        motion = self.vehicles[vehicle]
+        if motion.stopped is None:
+            return None
+        columns = motion.axle_positions.T
+        return motion.stopped, np.array([np.interp(motion.stopped, self.time, x) for x in columns])
+
     @property
     def vehicle(self) -> VehicleMotion:
         """The motion of the first vehicle."""
@@ -273,37 +289,42 @@ class Run(Responses):
 
     def summary(self) -> str:
         """Bridge, vehicles, road and settings, governing responses and impact factors, as text."""
-        from spanwise.summary import summary
-
-        return summary(self)
+        return view("_run_summary.summary")(self)
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.summary())}</pre>"
+        return view("_run_summary.page")(self)
 
     @property
     def supports(self) -> Array:
         """Positions of the supports [m], in the order of `reactions`."""
         return np.array([x for x, _ in self.bridge.supports])
 
-    def envelope(self, quantity: Quantity) -> Envelope:
-        """Extremes of a quantity along the bridge, with their times and vehicle positions.
+    def places(self, axis: Axis) -> Array:
+        """Positions of the sections, supports or clamps [m], or numbers of the axles from 1."""
+        return {
+            "section": self.sections,
+            "support": self.supports,
+            "clamp": self.bridge.clamps,
+            "axle": np.arange(1.0, len(self.static_axle_loads) + 1.0),
+        }[axis]
+
+    @telling
+    def envelope(self, quantity: str) -> Envelope:
+        """Extremes of a response along the bridge, with their times and vehicle positions.
 
         They include the instants at which an axle stands on a section, on both sides of it. The
         shears on the left and on the right of a section count together.
 
         Parameters
         ----------
-        quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
-            The quantity.
+        quantity : str
+            The response:
+
+            {responses}
         """
-        quantity = named("quantity", quantity, QUANTITIES)
-        columns = (Extremes._of(each) for each in self._core.envelope(quantity))
-        where = {
-            "reactions": self.supports,
-            "clamp_moments": self.bridge.clamps,
-            "axle_loads": np.arange(1.0, len(self.static_axle_loads) + 1.0),
-        }
-        return Envelope(where.get(quantity, self.sections), *columns)
+        of = response(quantity)
+        columns = (np.ascontiguousarray(each.T) for each in self._core.envelope(of.name))
+        return Envelope(self.places(of.axis), *(Extremes(*each) for each in columns))
 
     @cached_property
     def impact_factors(self) -> ImpactFactors:
@@ -328,24 +349,13 @@ class Run(Responses):
         ImpactFactors
             NaN where masked.
         """
-        choice("ratio", ratio, get_args(Ratio))
-        masked_below = masked(self.settings["mask"] if mask is None else mask)
-
-        def factors(quantity: Quantity, sense: str) -> Array:
-            return self._core.impact_factors(quantity, sense, ratio, masked_below)
-
-        return ImpactFactors(
-            ratio=ratio,
-            mask=masked_below,
-            sections=self.sections,
-            deflection=factors("deflection", "positive"),
-            sagging=factors("moment", "positive"),
-            hogging=factors("moment", "negative"),
-            shear=factors("shear", "either"),
-            supports=self.supports,
-            reactions=factors("reactions", "either"),
-            axle_loads=factors("axle_loads", "positive"),
-        )
+        choice("ratio", ratio, DEFINITIONS)
+        least = masked(self.settings["mask"] if mask is None else mask)
+        values = {
+            name: self._core.impact_factors(of.name, factor.sense, ratio, least)
+            for name, (of, factor) in factors().items()
+        }
+        return ImpactFactors(ratio, least, self.sections, self.supports, values)
 
     def to_dict(self) -> dict[str, Any]:
         """The results as plain lists and numbers, ``None`` where an impact factor is masked.
@@ -360,35 +370,42 @@ class Run(Responses):
         `can_grow`); ``settings``, the tables of a case that computes the run again:
         ``Case.from_dict(settings).run()``.
         """
-        from spanwise.report import as_dict
-
-        return as_dict(self)
+        return view("_run_files.as_dict")(self)
 
     def to_json(self, path: str | Path) -> None:
-        """Write `to_dict` to a JSON file."""
-        from spanwise.report import write_json
+        """Write `to_dict` to a JSON file.
 
-        write_json(self, path)
+        Raises
+        ------
+        OSError
+            If the file cannot be written; then there is none, or the old one.
+        """
+        view("_run_files.write_json")(self, path)
 
     def to_csv(self, directory: str | Path) -> None:
-        """Write impact factors, extremes and histories as CSV files into a directory."""
-        from spanwise.report import write_csv
+        """Write impact factors, extremes and histories into a folder, made if there is none.
 
-        write_csv(self, directory)
+        The files are ``impact_factors.csv``, ``lift_offs.csv``, ``envelope_<quantity>.csv``,
+        ``history_<quantity>.csv`` and ``history_vehicle.csv``, or ``history_vehicle_<number>.csv``
+        for each of several vehicles. Axles are numbered through all vehicles. The first row of a
+        file names the columns and units; numbers have a decimal point and all their digits.
 
-    def to_pandas(self, quantity: Quantity = "moment") -> pd.DataFrame:
-        """History of a quantity as a frame, time [s] down, sections, supports or axles across.
+        Raises
+        ------
+        OSError
+            If the folder or a file cannot be written; then no file has been changed.
+        """
+        view("_run_files.write_csv")(self, directory)
+
+    def to_pandas(self, quantity: str = "moment") -> pd.DataFrame:
+        """History of a response as a frame, time [s] down, sections, supports or axles across.
 
         Shears have two columns for each section, ``"left"`` and ``"right"`` of it. Needs the extra
         ``spanwise[pandas]``.
         """
-        from spanwise.report import as_frame
-
-        return as_frame(self, quantity)
+        return view("_run_files.as_frame")(self, quantity)
 
     @property
     def plot(self) -> RunPlot:
         """Figures of the run; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import RunPlot
-
-        return RunPlot(self)
+        return view("plotting.RunPlot")(self)

@@ -6,18 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar, Final, Literal, TypeAlias, cast, get_args
 
+from spanwise._build import Maker, Place, build_kind
 from spanwise._checks import (
-    choice,
     finite,
     items,
     not_negative,
     numbers,
+    one_of,
     positive,
     shown,
     whole_from,
-    word,
 )
-from spanwise._keys import Keys
+from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
 from spanwise.roads import Road
@@ -147,30 +147,23 @@ class Braking:
 Drive: TypeAlias = Plain | Acceleration | Speeds | Braking
 
 #: Drives that need more than a name, by kind.
-KINDS: Final = {each.kind: each for each in (Acceleration, Speeds, Braking)}
+KINDS: Final[dict[str, tuple[Maker[Acceleration | Speeds | Braking]]]] = {
+    each.kind: (Maker(each),) for each in (Acceleration, Speeds, Braking)
+}
+DRIVE: Final = Place("drive")
 
 
-def drive_of(value: object) -> Drive:
+def drive_of(value: object, place: Place = DRIVE) -> Drive:
     """A drive from a word, a drive, or the table of a case file, which says its ``kind``."""
     if isinstance(value, Acceleration | Speeds | Braking):
         return value
     if isinstance(value, Mapping):
-        kind = choice("drive kind", value.get("kind"), KINDS)
-        table = {key: each for key, each in value.items() if key != "kind"}
-        keys = Keys.of(KINDS[kind])
-        try:
-            keys.check_known(table, lambda _: "")
-            keys.check_complete(table)
-        except ValueError as error:
-            raise ValueError(f"drive of kind {kind}: {error}") from None
-        return KINDS[kind](**table)
-    try:
-        plain = word("drive", value, *get_args(Plain))
-        if plain not in get_args(Plain):
-            raise ValueError(f'drive = "{plain}": must be constant-speed or constant-traction')
-    except ValueError as error:
-        raise ValueError(f"{error}; or a drive of its own: {', '.join(KINDS)}") from None
-    return plain  # type: ignore[return-value]
+        return build_kind(KINDS, value, place)
+    steady = get_args(Plain)
+    if not isinstance(value, str) or value not in steady:
+        allowed = f"{' or '.join(steady)}; or a drive of its own: {', '.join(KINDS)}"
+        raise place.wrong(value, allowed)
+    return cast("Plain", value)
 
 
 def core_drive(drive: Drive) -> CoreDrive:
@@ -180,10 +173,7 @@ def core_drive(drive: Drive) -> CoreDrive:
 
 def plain_drive(drive: Drive) -> str | dict[str, Any]:
     """As a case file writes it."""
-    if isinstance(drive, str):
-        return drive
-    given = {k: [*v] if isinstance(v, tuple) else v for k, v in asdict(drive).items()}
-    return {"kind": drive.kind, **given}
+    return drive if isinstance(drive, str) else table_of(drive)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -231,8 +221,7 @@ class Passage:
         if self.speed is not None and isinstance(self.drive, Speeds):
             raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
         object.__setattr__(self, "entry", not_negative("entry", self.entry))
-        if word("direction", self.direction, *get_args(Direction)) not in get_args(Direction):
-            raise ValueError(f'direction = "{self.direction}": must be right or left')
+        one_of("direction", self.direction, get_args(Direction))
         if self.lane is not None:
             lane = whole_from("lane", self.lane, -MOST_LANE, MOST_LANE)
             object.__setattr__(self, "lane", lane)
@@ -249,6 +238,11 @@ class Passage:
             value = getattr(self, key)
             given += [] if value is None else [f"{key}={value!r}"]
         return f"Passage({', '.join(given)})"
+
+
+def is_alone(passages: Sequence[Passage]) -> bool:
+    """Whether it is one vehicle that does what the crossing says."""
+    return len(passages) == 1 and passages[0] == Passage(vehicle=passages[0].vehicle)
 
 
 def convoy(

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import InitVar, dataclass
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
 from spanwise import _core
 from spanwise._checks import numbers, shown
 from spanwise._wheels import Wheels
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -47,6 +43,10 @@ class ForceTrain(Wheels):
 
     def __repr__(self) -> str:
         return f"ForceTrain({sum(self.loads) / 1e3:.4g} kN, {self._row()})"
+
+    @property
+    def _total(self) -> str:
+        return f"{sum(self.loads) / 1e3:.1f} kN"
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from spanwise import _core
 from spanwise._checks import count, number, shown
 from spanwise._value import Brief
 from spanwise._wheels import Array, Wheels
-
-if TYPE_CHECKING:
-    pass
 
 T = TypeVar("T")
 
@@ -274,10 +271,17 @@ class Vehicle(Wheels):
                 )
 
     def __repr__(self) -> str:
-        bodies = ""
-        if self.bodies:
-            bodies = f"{len(self.bodies)} bod{'ies' if len(self.bodies) > 1 else 'y'}, "
-        return f"Vehicle({self.total_mass / 1e3:.4g} t, {bodies}{self._row()})"
+        return f"Vehicle({self.total_mass / 1e3:.4g} t, {self._bodies_in_words}{self._row()})"
+
+    @property
+    def _bodies_in_words(self) -> str:
+        number = len(self.bodies)
+        return f"{number} bod{'ies' if number > 1 else 'y'}, " if number else ""
+
+    @property
+    def _unsprung(self) -> list[float]:
+        masses = [axle.mass for axle in self.axles]
+        return masses if any(masses) else []
 
     @property
     def parts(self) -> tuple[Body, ...]:

@@ -1,7 +1,8 @@
 """Figures of bridges, vehicles, roads and runs, by matplotlib (the extra ``spanwise[plot]``).
 
-Every method returns a `matplotlib.figure.Figure` that belongs to no window: save it with
-``figure.savefig("name.svg")``, or leave it as the last line of a notebook cell.
+Every method draws into the axes `ax` or the figure `figure` of matplotlib that it is given, by
+default into a new one, and returns the `matplotlib.figure.Figure`. A new one belongs to no window:
+save it with ``figure.savefig("name.svg")``, or leave it as the last line of a notebook cell.
 """
 
 from spanwise.plotting.bridge import BridgePlot, SettlementPlot

@@ -14,25 +14,24 @@ from spanwise.plotting import symbols
 from spanwise.plotting.style import (
     GREY,
     LINES,
-    MEASURES,
     PALE,
-    Measure,
     along,
     axes_for,
     figure_for,
-    measure_on,
     metres,
+    response_on,
     styled,
     support_letters,
     whole,
     zero_line,
 )
+from spanwise.quantities import RESPONSES, influence_lines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-    from spanwise.bridge import Bridge, Quantity, Settlement, Structure
+    from spanwise.bridge import Bridge, Settlement, Structure
 
 #: Margin beside the beam in a drawing of the model, as a fraction of its length.
 MARGIN: Final = 0.04
@@ -40,19 +39,9 @@ MARGIN: Final = 0.04
 #: Masses of a span, on average, above which they are drawn small.
 CROWD: Final = 8
 
-INFLUENCES: Final[dict[str, Measure]] = {
-    "deflection": Measure("Deflection, down,\nfor 1 kN [mm]", 1e6, downward=True),
-    "slope": Measure("Slope of the deflection\nfor 1 kN [mrad]", 1e6),
-    "moment": Measure("Bending moment, sagging\ndrawn down, for 1 kN [kN m]", 1.0, downward=True),
-    "shear-left": Measure("Shear force on the left\nfor 1 kN [kN]", 1.0),
-    "shear-right": Measure("Shear force on the right\nfor 1 kN [kN]", 1.0),
-    "clamp-moment": Measure("Moment of the support\nfor 1 kN [kN m]", 1.0),
-    "reaction": Measure("Reaction, up,\nfor 1 kN [kN]", 1.0),
-}
-
 
 class BridgePlot:
-    """Figures of a bridge, reached as ``bridge.plot``."""
+    """Figures of a bridge, reached as ``bridge.plot``; each draws into what it is given."""
 
     def __init__(self, bridge: Bridge) -> None:
         self._bridge = bridge
@@ -63,15 +52,6 @@ class BridgePlot:
 
         Dots are masses, their area in proportion; open circles are hinges. Coils are springs, a
         spiral one for the rotation. Letters name the supports.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         ax = axes_for(ax, height=1.75)
         draw_bridge(ax, self._bridge, self._bridge.supports)
@@ -85,15 +65,6 @@ class BridgePlot:
 
         These are all supports between the first and the last one. Where they were is drawn as open
         circles: they stay reference stations (Kishan and Traill-Nash 1973, Fig. 3).
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         ax = axes_for(ax, height=1.75)
         supports = self._bridge.supports
@@ -123,12 +94,6 @@ class BridgePlot:
         ----------
         count : int, optional
             How many.
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         bridge = self._bridge
         count = whole_number("count", count)
@@ -165,7 +130,7 @@ class BridgePlot:
     @styled
     def influence_line(
         self,
-        quantity: Quantity,
+        quantity: str,
         at: float,
         *,
         structure: Structure = "actual",
@@ -181,27 +146,22 @@ class BridgePlot:
             The section, or the support for a reaction [m].
         structure : {"actual", "basic"}, optional
             The bridge with or without its hinges and intermediate redundant supports.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         bridge = self._bridge
         at = finite("at", at)
-        quantity = named("quantity", quantity, INFLUENCES)
+        quantity = named("quantity", quantity, influence_lines())
+        of = influence_lines()[quantity]
         x = _with_both_sides(np.linspace(0.0, bridge.length, 401), at)
         line = bridge.influence_line(quantity, at, x, structure)
-        measure = INFLUENCES[quantity]
+        scale = 1e3 * of.shown[1]
         ax = axes_for(ax)
         zero_line(ax)
-        ax.fill_between(x, measure.factor * line, color=PALE, linewidth=0.0)
-        ax.plot(x, measure.factor * line, **LINES[0])
+        ax.fill_between(x, scale * line, color=PALE, linewidth=0.0)
+        ax.plot(x, scale * line, **LINES[0])
         ax.plot([at], [0.0], "o", color="black", markersize=4.5, clip_on=False, zorder=5.0)
         along(ax, bridge)
         ax.set_xlabel("Position of the load, x [m]")
-        measure_on(ax, measure)
+        response_on(ax, of, quantity.rpartition("-")[2] if of.sided else "", "for 1 kN")
         where = f"at x = {metres(at)}" + (", basic bridge" if structure == "basic" else "")
         ax.set_title(where, loc="right", fontsize=8.0, pad=12.0)
         return whole(ax)
@@ -215,17 +175,7 @@ class SettlementPlot:
 
     @styled
     def __call__(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """Deflection, and below it the bending moment, both drawn downward.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Deflection, and below it the bending moment, both drawn downward."""
         found = self._settlement
         figure = figure_for(figure, 4.4)
         above, below = figure.subplots(2, 1, sharex=True)
@@ -235,11 +185,11 @@ class SettlementPlot:
         ):
             zero_line(ax)
             order = np.argsort(found.sections, kind="stable")
-            x, y = found.sections[order], MEASURES[name].factor * values[order]
+            x, y = found.sections[order], RESPONSES[name].shown[1] * values[order]
             ax.fill_between(x, y, color=PALE, linewidth=0.0)
             ax.plot(x, y, **LINES[0])
             along(ax, found.bridge, letters=ax is above, label=ax is below)
-            measure_on(ax, MEASURES[name])
+            response_on(ax, RESPONSES[name])
         figure.align_ylabels([above, below])
         return whole(figure)
 

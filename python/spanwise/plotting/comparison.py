@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from spanwise._checks import choice, counts, mapping, numbers, shown, text
-from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
+from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
 from spanwise.plotting.style import (
     LINES,
     MARKERS,
@@ -26,12 +26,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-Factor: TypeAlias = Literal["deflection", "sagging", "hogging", "shear"]
-
 
 @styled
 def compare_impact_factors(
-    runs: Mapping[str, Run], factor: Factor = "deflection", *, ax: Axes | None = None
+    runs: Mapping[str, Run], factor: str = "deflection", *, ax: Axes | None = None
 ) -> Figure:
     """Impact factors of several runs over the same bridge, blank where masked.
 
@@ -39,32 +37,27 @@ def compare_impact_factors(
     ----------
     runs : mapping of str to Run
         The runs by what the legend calls them.
-    factor : {"deflection", "sagging", "hogging", "shear"}, optional
-        Which impact factor.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    factor : str, optional
+        Which impact factor, one that there is along the bridge.
     """
     for name, each in mapping("runs", runs, "runs by name").items():
         if not isinstance(each, Run):
             raise TypeError(f"runs[{shown(name)}] = {shown(each)}: must be a Run")
     if not runs:
         raise ValueError("runs: give at least one run")
-    choice("factor", factor, FACTORS)
+    titles = along_bridge()
+    choice("factor", factor, titles)
     ax = axes_for(ax)
     zero_line(ax, at=1.0)
     for i, (name, run) in enumerate(runs.items()):
-        values = getattr(run.impact_factors, factor)
+        values = run.impact_factors[factor]
         plot_masked(
             ax, run.impact_factors.sections, values, label=str(name), **LINES[i % len(LINES)]
         )
     first = next(iter(runs.values()))
     along(ax, first.bridge, hinges=False)
     ax.set_xlabel(f"{ax.get_xlabel()}\n{mask_note(first.impact_factors.mask)}")
-    ax.set_ylabel(f"Impact factor,\n{FACTORS[factor].lower()} [-]")
+    ax.set_ylabel(f"Impact factor,\n{titles[factor].lower()} [-]")
     legend_above(ax, columns=3 if len(runs) != 4 else 2)
     return whole(ax)
 
@@ -88,12 +81,6 @@ def compare_convergence(
         have no place on the logarithmic axis and are left out.
     reference : str, optional
         What the errors are measured from, for the note below the figure.
-    figure : matplotlib.figure.Figure or SubFigure, optional
-        Where to draw; by default a new figure.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     included = counts("modes", modes)
     if not included:

@@ -9,36 +9,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import named
-from spanwise._ensemblesummary import differ
 from spanwise.plotting.envelope import branches
-from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
+from spanwise.plotting.factors import mask_note, plot_masked
 from spanwise.plotting.style import (
     DYNAMIC,
     GREY,
-    MEASURES,
     PALE,
     STATIC,
     along,
     axes_for,
     legend_above,
-    measure_of,
-    measure_on,
+    name_places,
+    name_supports,
+    response_on,
     styled,
-    support_letters,
     whole,
     zero_line,
 )
-from spanwise.samples import FACTORS as FACTORS_OF
-from spanwise.samples import Factor
+from spanwise.quantities import factors, response, telling
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.transforms import Transform
 
-    from spanwise._recipe import Quantity
-    from spanwise.columns import SampleExtremes
-    from spanwise.population import Ensemble
+    from spanwise.ensembles import Ensemble
+    from spanwise.extremes import SampleExtremes
+    from spanwise.quantities import Response
 
 #: The band that is drawn.
 BAND: Final = (5.0, 95.0)
@@ -53,25 +50,22 @@ Rows: TypeAlias = NDArray[np.float64]
 
 
 class EnsemblePlot:
-    """Figures of an ensemble, as methods; each takes the axes to draw into, or makes a figure."""
+    """Figures of an ensemble, reached as ``ensemble.plot``; each draws into what it is given."""
 
     def __init__(self, ensemble: Ensemble) -> None:
         self._ensemble = ensemble
 
     @styled
-    def impact_factors(self, quantity: Factor = "sagging", ax: Axes | None = None) -> Figure:
+    @telling
+    def impact_factors(self, quantity: str = "sagging", ax: Axes | None = None) -> Figure:
         """Impact factors along the bridge: median and the band from 5 to 95 % of the samples.
 
         Parameters
         ----------
-        quantity : {"deflection", "sagging", "hogging", "shear", "reactions", "axle_loads"}
-            Of what, as in `Ensemble.impact_factors`.
-        ax : Axes, optional
-            Where to draw; a new figure by default.
+        quantity : str
+            Of what, as in `Ensemble.impact_factors`:
 
-        Returns
-        -------
-        Figure
+            {factors}
 
         Raises
         ------
@@ -79,7 +73,8 @@ class EnsemblePlot:
             If there are no such factors, no samples, or no static value to divide by.
         """
         ensemble = self._ensemble
-        quantity = named("quantity", quantity, FACTORS_OF)
+        quantity = named("quantity", quantity, factors())
+        of, factor = factors()[quantity]
         values = ensemble.impact_factors[quantity]
         if len(ensemble.failures) < ensemble.samples and np.isnan(values).all():
             raise ValueError(
@@ -87,40 +82,38 @@ class EnsemblePlot:
             )
         low, median, high, largest = _bands(values)
         ax = axes_for(ax)
-        several = quantity in FACTORS and len(ensemble.sections) > 1
+        by_section = of.axis == "section"
+        several = by_section and len(ensemble.sections) > 1
         if several:
             x = ensemble.sections
             _band(ax, x, low, high, _name(ensemble))
             plot_masked(ax, x, median, label="median", **DYNAMIC)
             plot_masked(ax, x, largest, label="largest", color=GREY, linewidth=0.8)
             along(ax, ensemble.bridge)
-            notes = [mask_note(ensemble._recipe.conditions.mask)]
+            notes = [mask_note(ensemble._plan.conditions.mask)]
             notes += self._frame(ax, quantity, low, largest)
             ax.set_xlabel("\n".join([ax.get_xlabel(), *notes]))
-        elif quantity in FACTORS:
+        elif by_section:
             x = ensemble.sections
             _whiskers(ax, x, low, median, high, f"median, {_name(ensemble)}")
             ax.plot(x, largest, "_", color=GREY, markersize=10.0, label="largest")
             along(ax, ensemble.bridge, hinges=False)
         else:
-            _bars(ax, ensemble, quantity, low, median, high)
+            _bars(ax, ensemble, of, low, median, high)
         zero_line(ax, 1.0)
-        name = {"reactions": "Reaction", "axle_loads": "Axle load", **FACTORS}[quantity]
-        ax.set_ylabel(f"{name}, dynamic\nby static [-]")
-        legend_above(ax, clear=1.6 if quantity in FACTORS else 0.5)
+        ax.set_ylabel(f"{factor.title}, dynamic\nby static [-]")
+        legend_above(ax, clear=1.6 if by_section else 0.5)
         return whole(ax)
 
-    def _frame(self, ax: Axes, quantity: Factor, low: Rows, largest: Rows) -> list[str]:
+    def _frame(self, ax: Axes, quantity: str, low: Rows, largest: Rows) -> list[str]:
         """Ends of the axis, and a note if a curve runs out of it.
 
         What grows far beyond the factors where the response governs is large only for lack of a
         static value.
         """
-        name, sense = FACTORS_OF[quantity]
-        extremes = self._ensemble.envelope(name)
-        up, down = extremes.static_max, -extremes.static_min
-        static = {"positive": up, "negative": down, "either": np.fmax(up, down)}[sense]
-        static = np.nanmean(np.atleast_2d(static), axis=0)
+        of, factor = factors()[quantity]
+        _, values = self._ensemble.envelope(of.name).of(factor.sense)
+        static = np.nanmean(values, axis=0)
         governing = largest[static >= 0.5 * np.nanmax(static)]
         most = float(np.nanmax(largest))
         cap = most
@@ -132,55 +125,48 @@ class EnsemblePlot:
         return [] if cap == most else [f"(cut at {cap:.3g}; the largest is {most:.3g})"]
 
     @styled
-    def envelope(self, quantity: Quantity = "moment", ax: Axes | None = None) -> Figure:
+    @telling
+    def envelope(self, quantity: str = "moment", ax: Axes | None = None) -> Figure:
         """Largest and smallest values along the bridge: median, band from 5 to 95 %, and static.
 
         Parameters
         ----------
-        quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments"}
-            Of what.
-        ax : Axes, optional
-            Where to draw; a new figure by default.
+        quantity : str
+            The response:
 
-        Returns
-        -------
-        Figure
+            {bridge}
 
         Raises
         ------
         ValueError
             If that was not looked at or is not along the bridge, or there are no samples.
         """
-        quantity = named("quantity", quantity, MEASURES)
-        ensemble, measure = self._ensemble, measure_of(quantity)
-        if str(quantity) == "axle_loads":
+        ensemble, of = self._ensemble, response(quantity)
+        if of.axis == "axle":
             raise ValueError(
-                "quantity = 'axle_loads': is not drawn along the bridge; Ensemble.envelope has "
-                "them, and plot.impact_factors('axle_loads') draws their factors"
+                f"quantity = {of.name!r}: is not drawn along the bridge; Ensemble.envelope has "
+                f"them, and plot.impact_factors({of.name!r}) draws their factors"
             )
-        if quantity not in ensemble.quantities:
+        if of not in ensemble.responses:
             raise ValueError(
-                f"quantity = {quantity!r}: was not looked at; this ensemble has "
+                f"quantity = {of.name!r}: was not looked at; this ensemble has "
                 f"{', '.join(ensemble.quantities)}"
             )
-        extremes = ensemble.envelope(quantity)
+        extremes = ensemble.envelope(of.name)
         ax = axes_for(ax)
-        by_section = quantity in ("deflection", "moment", "shear")
+        by_section = of.axis == "section"
         several = by_section and len(extremes.x) > 1
-        beside = "static, median" if _statics_differ(extremes) else "static"
+        beside = "static, median" if extremes.static_varies else "static"
         for side, first in (("max", True), ("min", False)):
             x, curves = extremes.x, _curves(extremes, side)
-            if quantity == "shear" and several:
-                both = [
-                    _curves(each, side)
-                    for each in map(ensemble.envelope, ("shear_left", "shear_right"))
-                ]
+            if of.sided and several:
+                both = [_curves(each, side) for each in map(ensemble.envelope, of.parts)]
                 cut = [
                     branches(extremes.x, curve, np.stack(sides, axis=-1), ensemble.supports)
                     for curve, *sides in zip(curves, *both, strict=True)
                 ]
                 x, curves = cut[0][0], [curve for _, curve in cut]
-            low, median, high, static = (measure.factor * each for each in curves)
+            low, median, high, static = (of.shown[1] * each for each in curves)
             if several:
                 _band(ax, x, low, high, _name(ensemble) if first else None)
                 ax.plot(x, median, label="median" if first else None, **DYNAMIC)
@@ -192,9 +178,9 @@ class EnsemblePlot:
         if by_section:
             along(ax, ensemble.bridge)
         else:
-            _name_supports(ax, ensemble, quantity)
+            name_supports(ax, ensemble.bridge, of.axis)
         zero_line(ax)
-        measure_on(ax, measure)
+        response_on(ax, of)
         legend_above(ax, clear=1.6 if by_section else 0.5)
         return whole(ax)
 
@@ -215,10 +201,6 @@ def _bands(values: Rows) -> tuple[Rows, Rows, Rows, Rows]:
     found[:, there] = np.nanpercentile(values[:, there], [BAND[0], 50.0, BAND[1], 100.0], axis=0)
     low, median, high, largest = found
     return low, median, high, largest
-
-
-def _statics_differ(extremes: SampleExtremes) -> bool:
-    return differ(extremes.static_max) or differ(extremes.static_min)
 
 
 def _name(ensemble: Ensemble) -> str:
@@ -299,26 +281,10 @@ def _points(
     _hold(ax, at, static)
 
 
-def _bars(
-    ax: Axes, ensemble: Ensemble, quantity: Factor, low: Rows, median: Rows, high: Rows
-) -> None:
+def _bars(ax: Axes, ensemble: Ensemble, of: Response, low: Rows, median: Rows, high: Rows) -> None:
     places = np.arange(len(median), dtype=np.float64)
     _whiskers(ax, places, low, median, high, f"median, {_name(ensemble)}")
-    if quantity == "reactions":
-        _name_supports(ax, ensemble, quantity)
-        return
-    ax.set_xticks(range(len(median)), [str(k + 1) for k in range(len(median))])
-    ax.set_xlabel("Axle [number, front first]")
-    ax.set_xlim(-0.6, len(median) - 0.4)
-
-
-def _name_supports(ax: Axes, ensemble: Ensemble, quantity: str) -> None:
-    bridge = ensemble.bridge
-    names = [
-        f"{letter}\n{x:g} m"
-        for letter, (x, _) in zip(support_letters(bridge), bridge.supports, strict=True)
-        if quantity == "reactions" or x in bridge.clamps
-    ]
-    ax.set_xticks(range(len(names)), names)
-    ax.set_xlabel("Support [letter, distance from the left end]")
-    ax.set_xlim(-0.6, len(names) - 0.4)
+    if of.axis == "axle":
+        name_places(ax, [str(k + 1) for k in range(len(median))], "Axle [number, front first]")
+    else:
+        name_supports(ax, ensemble.bridge, of.axis)

@@ -11,63 +11,67 @@ from spanwise.plotting.style import (
     DYNAMIC,
     PALE,
     STATIC,
-    Measure,
     along,
     legend_above,
-    metres,
-    support_letters,
+    name_places,
+    name_supports,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.responses import Envelope, Quantity
+    from spanwise.extremes import Envelope
+    from spanwise.quantities import Response
     from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
 
-#: Quantities with a value for each section; the others have one for each support or axle.
-BY_SECTION = ("deflection", "moment", "shear")
 
-
-def envelope_of(run: Run, quantity: Quantity) -> Envelope:
+def envelope_of(run: Run, of: Response) -> Envelope:
     """The envelope, refused if there is nothing in it."""
-    envelope = run.envelope(quantity)
+    envelope = run.envelope(of.name)
     if len(envelope.x) == 0:
-        raise ValueError(f"quantity = {quantity!r}: no support of this bridge holds the rotation")
+        raise ValueError(f"quantity = {of.name!r}: no support of this bridge holds the rotation")
     return envelope
 
 
-def draw_curves(ax: Axes, run: Run, quantity: Quantity, measure: Measure) -> None:
+def draw_curves(ax: Axes, run: Run, of: Response) -> None:
     """Largest and smallest values along the bridge, dynamic and static."""
-    envelope = envelope_of(run, quantity)
+    envelope, (_, scale) = envelope_of(run, of), of.shown
     for extremes, line, label in (
         (envelope.max, DYNAMIC, "dynamic"),
         (envelope.min, DYNAMIC, None),
         (envelope.static_max, STATIC, "static"),
         (envelope.static_min, STATIC, None),
     ):
-        x, y = envelope.x, measure.factor * extremes.value
-        if quantity == "shear" and np.isfinite(y).any():
-            of = run if line is DYNAMIC else run.static
+        x, y = envelope.x, scale * extremes.value
+        if of.sided and np.isfinite(y).any():
+            both: Array = getattr(run if line is DYNAMIC else run.static, of.name)
             largest = extremes in (envelope.max, envelope.static_max)
-            sides = measure.factor * (of.shear.max(axis=0) if largest else of.shear.min(axis=0))
+            sides = scale * (both.max(axis=0) if largest else both.min(axis=0))
             x, y = branches(x, y, sides, run.supports)
         ax.plot(x, y, label=label, **line)
     along(ax, run.bridge)
     legend_above(ax)
 
 
-def draw_bars(ax: Axes, run: Run, quantity: Quantity, measure: Measure) -> None:
+def draw_bars(ax: Axes, run: Run, of: Response) -> None:
     """A bar from the smallest to the largest value for each support or axle."""
-    envelope = envelope_of(run, quantity)
+    envelope, (_, scale) = envelope_of(run, of), of.shown
     for low, high, shift, dynamic in (
         (envelope.min, envelope.max, -0.19, True),
         (envelope.static_min, envelope.static_max, 0.19, False),
     ):
-        ends = measure.factor * low.value, measure.factor * high.value
-        _bars(ax, shift, *ends, dynamic=dynamic, downward=measure.downward)
-    _name_bars(ax, run, quantity)
+        ends = scale * low.value, scale * high.value
+        _bars(ax, shift, *ends, dynamic=dynamic, downward=of.downward)
+    if of.axis == "axle":
+        alone = len(run.passages) == 1
+        names = [str(axle) if alone else f"{vehicle}.{axle}" for vehicle, axle in run.axles]
+        name_places(ax, names, f"Axle [{'' if alone else 'vehicle.'}number, front first]")
+    else:
+        name_supports(ax, run.bridge, of.axis)
+    ax.use_sticky_edges = False
+    ax.margins(y=0.12)
     legend_above(ax, clear=0.5)
 
 
@@ -117,23 +121,3 @@ def _bars(
                 va="bottom" if up else "top",
                 fontsize=7.0 if len(low) <= 6 else 5.5,
             )
-
-
-def _name_bars(ax: Axes, run: Run, quantity: str) -> None:
-    letters = support_letters(run.bridge)
-    supports = list(zip(letters, run.bridge.supports, strict=True))
-    if quantity == "axle_loads":
-        alone = len(run.passages) == 1
-        names = [str(axle) if alone else f"{vehicle}.{axle}" for vehicle, axle in run.axles]
-        ax.set_xlabel(f"Axle [{'' if alone else 'vehicle.'}number, front first]")
-    else:
-        names = [
-            f"{letter}\n{metres(x)}"
-            for letter, (x, _) in supports
-            if quantity == "reactions" or x in run.bridge.clamps
-        ]
-        ax.set_xlabel("Support [letter, distance from the left end]")
-    ax.set_xticks(range(len(names)), names)
-    ax.set_xlim(-0.6, len(names) - 0.4)
-    ax.use_sticky_edges = False
-    ax.margins(y=0.12)

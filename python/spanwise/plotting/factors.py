@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise.quantities import factors
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-#: What the columns of a table of impact factors are called on an axis.
-FACTORS: Final = {
-    "deflection": "Deflection",
-    "sagging": "Sagging moment",
-    "hogging": "Hogging moment",
-    "shear": "Shear force",
-}
+
+def along_bridge() -> dict[str, str]:
+    """Titles of the factors with a value for each section, by name."""
+    return {name: each.title for name, (of, each) in factors().items() if of.axis == "section"}
 
 
 def plot_masked(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64], **line: Any) -> None:

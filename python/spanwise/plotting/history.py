@@ -8,25 +8,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import choice, finite
-from spanwise._values import axle_names
-from spanwise.plotting.envelope import BY_SECTION, envelope_of
+from spanwise.plotting.envelope import envelope_of
 from spanwise.plotting.style import LIFTED, metres
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from spanwise.responses import Quantity, Responses
+    from spanwise.quantities import Response
     from spanwise.runs import Run
 
 Array: TypeAlias = NDArray[np.float64]
 Side: TypeAlias = Literal["left", "right"]
 
 
-def column(
-    run: Run, quantity: Quantity, at: float | None, side: Side | None
-) -> tuple[int, str, Side]:
-    """Which column of the histories is asked for, in numbers and in words."""
-    envelope = envelope_of(run, quantity)
+def column(run: Run, of: Response, at: float | None, side: Side | None) -> tuple[str, Array, Array]:
+    """Which column of the histories is asked for, in words, and it, dynamic and static."""
+    envelope = envelope_of(run, of)
     if side is not None:
         choice("side", side, get_args(Side))
     if at is None:
@@ -37,31 +34,19 @@ def column(
         index = int(np.abs(envelope.x - at).argmin())
         nearest = envelope.x[index]
         if not abs(nearest - at) <= 1e-6 * run.bridge.length:
-            hint = "; cross(..., sections=[...]) chooses others" if quantity in BY_SECTION else ""
+            hint = "; cross(..., sections=[...]) chooses others" if of.axis == "section" else ""
             raise ValueError(
-                f"at = {at!r}: the run has no {quantity} there, the nearest is at {nearest:g}{hint}"
+                f"at = {at!r}: the run has no {of.name} there, the nearest is at {nearest:g}{hint}"
             )
+    if of.axis == "axle":
+        loads: Array = getattr(run, of.name)[:, index]
+        return run.axle_names[index], loads, np.full_like(loads, run.static_axle_loads[index])
     x = float(envelope.x[index])
-    if quantity == "axle_loads":
-        return index, axle_names(run)[index], "right"
-    if quantity == "shear":
-        chosen: Side = side or ("left" if x >= run.bridge.length else "right")
-        return index, f"just {chosen} of x = {metres(x)}", chosen
-    return index, f"at x = {metres(x)}", "right"
-
-
-def histories(run: Run, quantity: str, index: int, side: Side) -> tuple[Array, Array]:
-    """That column, dynamic and static."""
-    if quantity == "axle_loads":
-        loads = run.axle_loads[:, index]
-        return loads, np.full_like(loads, run.static_axle_loads[index])
-    name = f"shear_{side}" if quantity == "shear" else quantity
-
-    def of(responses: Responses) -> Array:
-        values: Array = getattr(responses, name)[:, index]
-        return values
-
-    return of(run), of(run.static)
+    name, where = of.name, f"at x = {metres(x)}"
+    if of.sided:
+        side = side or ("left" if x >= run.bridge.length else "right")
+        name, where = of.parts[side == "right"], f"just {side} of x = {metres(x)}"
+    return where, getattr(run, name)[:, index], getattr(run.static, name)[:, index]
 
 
 def front_axle_on_top(ax: Axes, run: Run, vehicle: int = 1) -> None:

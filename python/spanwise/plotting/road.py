@@ -55,12 +55,6 @@ class RoadPlot:
         start, end : float, optional
             Ends of the section [m]; by default all that is known of the road, one period of a
             random one.
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         figure = figure_for(figure, 2.0 * HEIGHT + 0.8)
         above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.7))
@@ -81,12 +75,6 @@ class RoadPlot:
         start, end : float, optional
             Ends of the section [m]; by default all that is known of the road, one period of a
             random one.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         road, (first, last) = self._road, self._section(start, end)
         ax = axes_for(ax, height=2.2)
@@ -116,12 +104,6 @@ class RoadPlot:
         start, end : float, optional
             Ends of the section [m]; by default all that is known of the road, one period of a
             random one.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         road, (first, last) = self._road, self._section(start, end)
         n, density = road.psd(first, last)

@@ -8,37 +8,35 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import count, finite, named
+from spanwise._checks import count, finite
 from spanwise.plotting.bridge import draw_bridge
-from spanwise.plotting.envelope import BY_SECTION, draw_bars, draw_curves
-from spanwise.plotting.factors import FACTORS, mask_note, plot_masked
-from spanwise.plotting.history import Side, column, front_axle_on_top, histories, mark_lift_offs
+from spanwise.plotting.envelope import draw_bars, draw_curves
+from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
+from spanwise.plotting.history import Side, column, front_axle_on_top, mark_lift_offs
 from spanwise.plotting.style import (
     DYNAMIC,
     GREY,
     HEIGHT,
     LINES,
-    MEASURES,
     PALE,
     STATIC,
     along,
     axes_for,
     figure_for,
     legend_above,
-    measure_of,
-    measure_on,
     new_figure,
+    response_on,
     styled,
     whole,
     zero_line,
 )
 from spanwise.plotting.vehicle import draw_vehicle, extent, top
+from spanwise.quantities import response, telling
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-    from spanwise.responses import Quantity
     from spanwise.runs import Run
     from spanwise.vehicles import AnyVehicle
 
@@ -53,7 +51,7 @@ SCALE: Final = 0.55
 
 
 class RunPlot:
-    """Figures of a run, reached as ``run.plot``."""
+    """Figures of a run, reached as ``run.plot``; each draws into what it is given."""
 
     def __init__(self, run: Run) -> None:
         self._run = run
@@ -74,12 +72,6 @@ class RunPlot:
             Where the front axle stands [m], of a vehicle alone.
         time : float, optional
             When [s], in place of that; by default when the static axle loads bend the bridge most.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         run = self._run
         if front_axle is not None and len(run.passages) > 1:
@@ -120,7 +112,8 @@ class RunPlot:
         return whole(panels[0][0])
 
     @styled
-    def envelope(self, quantity: Quantity = "moment", *, ax: Axes | None = None) -> Figure:
+    @telling
+    def envelope(self, quantity: str = "moment", *, ax: Axes | None = None) -> Figure:
         """Largest and smallest values along the bridge, dynamic and static.
 
         Deflections and sagging moments are drawn downward. Of reactions, clamp moments and axle
@@ -128,41 +121,31 @@ class RunPlot:
 
         Parameters
         ----------
-        quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
-            The quantity.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
+        quantity : str
+            The response:
 
-        Returns
-        -------
-        matplotlib.figure.Figure
+            {responses}
         """
-        quantity = named("quantity", quantity, MEASURES)
-        run, measure = self._run, measure_of(quantity)
+        of = response(quantity)
         ax = axes_for(ax)
         zero_line(ax)
-        draw = draw_curves if quantity in BY_SECTION else draw_bars
-        draw(ax, run, quantity, measure)
-        measure_on(ax, measure)
+        draw = draw_curves if of.axis == "section" else draw_bars
+        draw(ax, self._run, of)
+        response_on(ax, of)
         return whole(ax)
 
     @styled
     def impact_factors(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """Impact factors along the bridge, blank where masked.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """Impact factors along the bridge, blank where masked."""
         run, factors = self._run, self._run.impact_factors
-        figure = figure_for(figure, 4.3)
-        panels = figure.subplots(2, 2, sharex=True)
-        for ax, (factor, name) in zip(panels.flat, FACTORS.items(), strict=True):
+        titles = along_bridge()
+        rows = (len(titles) + 1) // 2
+        figure = figure_for(figure, 0.7 + 1.8 * rows)
+        panels = [*figure.subplots(rows, 2, sharex=True, squeeze=False).flat]
+        for ax, above in zip(panels[len(titles) :], panels[len(titles) - 2 :], strict=False):
+            ax.remove()
+            above.xaxis.set_tick_params(labelbottom=True)
+        for ax, (factor, name) in zip(panels, titles.items(), strict=False):
             zero_line(ax, at=1.0)
             values = getattr(factors, factor)
             plot_masked(ax, factors.sections, values, **LINES[0])
@@ -179,9 +162,10 @@ class RunPlot:
         return whole(figure)
 
     @styled
+    @telling
     def history(
         self,
-        quantity: Quantity = "moment",
+        quantity: str = "moment",
         at: float | None = None,
         *,
         side: Side | None = None,
@@ -191,36 +175,30 @@ class RunPlot:
 
         Parameters
         ----------
-        quantity : {"deflection", "moment", "shear", "reactions", "clamp_moments", "axle_loads"}
-            The quantity.
+        quantity : str
+            The response:
+
+            {responses}
         at : float, optional
             The section, support or clamp [m], or the number of the axle from 1; by default the one
             with the largest static value.
         side : {"left", "right"}, optional
             Side of the section at which the shear is taken; by default the right one, but at the
             right end of the bridge the left one.
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
-        quantity = named("quantity", quantity, MEASURES)
-        run, measure = self._run, measure_of(quantity)
-        index, where, side = column(run, quantity, at, side)
-        dynamic, static = histories(run, quantity, index, side)
+        run, of = self._run, response(quantity)
+        where, dynamic, static = column(run, of, at, side)
         ax = axes_for(ax)
         zero_line(ax)
-        ax.plot(run.time, measure.factor * dynamic, label="dynamic", **DYNAMIC)
-        ax.plot(run.time, measure.factor * static, label="static", **STATIC)
-        if quantity == "axle_loads":
-            mark_lift_offs(ax, run, index)
+        ax.plot(run.time, of.shown[1] * dynamic, label="dynamic", **DYNAMIC)
+        ax.plot(run.time, of.shown[1] * static, label="static", **STATIC)
+        if of.axis == "axle":
+            mark_lift_offs(ax, run, run.axle_names.index(where))
         ax.set_xlabel("Time [s]")
         ax.set_title(where, loc="right", fontsize=8.0)
         front_axle_on_top(ax, run)
         legend_above(ax, clear=4.2)
-        measure_on(ax, measure)
+        response_on(ax, of)
         return whole(ax)
 
     @styled
@@ -233,12 +211,6 @@ class RunPlot:
         ----------
         number : int, optional
             Number of the vehicle, from 1.
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         run = self._run
         chosen = count("number", number)
@@ -294,17 +266,7 @@ class RunPlot:
 
     @styled
     def road(self, *, figure: Figure | SubFigure | None = None) -> Figure:
-        """The road where wheels pass, with the bridge as a band, and the spectrum of all of it.
-
-        Parameters
-        ----------
-        figure : matplotlib.figure.Figure or SubFigure, optional
-            Where to draw; by default a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
+        """The road where wheels pass, with the bridge as a band, and the spectrum of all of it."""
         run = self._run
         paths = [motion.axle_positions for motion in run.vehicles]
         first, last = run.road.ends

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
-from spanwise._checks import choice, shown
-from spanwise._extras import require
+from spanwise._checks import shown
+from spanwise._door import require
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
     from spanwise.bridge import Bridge
+    from spanwise.quantities import Axis, Response
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -70,40 +70,6 @@ DYNAMIC: Final = LINES[0]
 STATIC: Final = LINES[1]
 
 
-@dataclass(frozen=True)
-class Measure:
-    """How a quantity is written on an axis.
-
-    Attributes
-    ----------
-    label : str
-        Name, direction and unit.
-    factor : float
-        From SI to that unit.
-    downward : bool
-        Whether positive values are drawn downward.
-    """
-
-    label: str
-    factor: float
-    downward: bool = False
-
-
-MEASURES: Final[dict[str, Measure]] = {
-    "deflection": Measure("Deflection, down [mm]", 1e3, downward=True),
-    "moment": Measure("Bending moment,\nsagging drawn down [kN m]", 1e-3, downward=True),
-    "shear": Measure("Shear force [kN]", 1e-3),
-    "reactions": Measure("Reaction, up [kN]", 1e-3),
-    "clamp_moments": Measure("Clamp moment,\nsagging drawn down [kN m]", 1e-3, downward=True),
-    "axle_loads": Measure("Axle load [kN]", 1e-3),
-}
-
-
-def measure_of(quantity: str) -> Measure:
-    """How a quantity of a run is written on an axis."""
-    return MEASURES[choice("quantity", quantity, MEASURES)]
-
-
 def styled(draw: Callable[P, T]) -> Callable[P, T]:
     """Let a function draw in the style of this package, if matplotlib is there."""
 
@@ -152,11 +118,28 @@ def whole(part: Axes | Figure | SubFigure) -> Figure:
     return figure.figure
 
 
-def measure_on(ax: Axes, measure: Measure) -> None:
-    """Label the upright axis and turn it the way the quantity is drawn."""
-    ax.set_ylabel(measure.label)
-    if measure.downward:
+def response_on(ax: Axes, of: Response, side: str = "", per: str = "") -> None:
+    """Label the upright axis and turn it the way the response is drawn."""
+    ax.set_ylabel(of.label(side, per))
+    if of.downward:
         ax.yaxis.set_inverted(True)
+
+
+def name_supports(ax: Axes, bridge: Bridge, axis: Axis) -> None:
+    """Let the horizontal axis run over the supports, or those that hold the rotation."""
+    names = [
+        f"{letter}\n{metres(x)}"
+        for letter, (x, _) in zip(support_letters(bridge), bridge.supports, strict=True)
+        if axis == "support" or x in bridge.clamps
+    ]
+    name_places(ax, names, "Support [letter, distance from the left end]")
+
+
+def name_places(ax: Axes, names: Sequence[str], label: str) -> None:
+    """Let the horizontal axis run over places by name."""
+    ax.set_xticks(range(len(names)), names)
+    ax.set_xlabel(label)
+    ax.set_xlim(-0.6, len(names) - 0.4)
 
 
 def along(

@@ -34,7 +34,7 @@ LINE: Final = 0.183
 
 
 class VehiclePlot:
-    """Figures of a vehicle, reached as ``vehicle.plot``."""
+    """Figures of a vehicle, reached as ``vehicle.plot``; each draws into what it is given."""
 
     def __init__(self, vehicle: AnyVehicle) -> None:
         self._vehicle = vehicle
@@ -44,15 +44,6 @@ class VehiclePlot:
         """The bodies on their axles, each a tyre below a suspension that may rub; or the train.
 
         To scale along the road; heights are schematic. A new figure also lists the values.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
         """
         if ax is None:
             columns, notes = _values(self._vehicle)

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import array, not_negative, number, shown
 from spanwise._core import Road as CoreRoad
+from spanwise._door import view
+from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise.roads import roughness
@@ -66,6 +68,18 @@ class Road(Brief):
         """What was warned of."""
         return ()
 
+    def __str__(self) -> str:
+        """Kind, places, roughness and contact patch, in words."""
+        patch = getattr(self, "contact_patch", None)
+        return ", ".join(
+            [*self._words(), *([] if patch is None else [f"contact patch {patch:g} m"])]
+        )
+
+    def _words(self) -> list[str]:
+        """What there is to say of it beside the contact patch."""
+        keys = [key for key in ("at", "start", "end") if hasattr(self, key)]
+        return [self.kind, *(f"{key} {getattr(self, key):g} m" for key in keys)]
+
     def _made(self) -> CoreRoad:
         raise TypeError("Road stands for all kinds of roads; make one of them, such as Smooth()")
 
@@ -114,14 +128,12 @@ class Road(Brief):
 
         What is None is left out.
         """
-        table: dict[str, Any] = {"kind": self.kind}
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if isinstance(value, np.ndarray):
-                value = value.tolist()
-            if value is not None:
-                table[each.name] = list(value) if isinstance(value, tuple) else value
-        return table
+        return table_of(self)
+
+    @property
+    def _summands(self) -> list[Road]:
+        """The roads that it is the sum of, none of them a sum; or itself."""
+        return [self]
 
     @property
     def surface(self) -> Road:
@@ -337,9 +349,7 @@ class Road(Brief):
     @property
     def plot(self) -> RoadPlot:
         """Figures of the road; needs the extra ``spanwise[plot]``."""
-        from spanwise.plotting import RoadPlot
-
-        return RoadPlot(self)
+        return view("plotting.RoadPlot")(self)
 
 
 @dataclass(frozen=True, repr=False)
@@ -375,6 +385,9 @@ class Sum(Road):
         self._set(parts=tuple(self.parts))
         return CoreRoad.sum([part._core for part in self.parts])
 
+    def __str__(self) -> str:
+        return " + ".join(map(str, self.parts))
+
     @property
     def arguments(self) -> list[dict[str, Any]]:
         """The tables of all parts."""
@@ -383,6 +396,10 @@ class Sum(Road):
             found = part.arguments
             tables += found if isinstance(found, list) else [found]
         return tables
+
+    @property
+    def _summands(self) -> list[Road]:
+        return [each for part in self.parts for each in part._summands]
 
     def _times(self, factor: float) -> Road:
         return total(part * factor for part in self.parts)

@@ -113,6 +113,9 @@ class Profile(Road):
         # The core knows how far they are apart nearly everywhere, as the shortest wave they hold.
         return HELD / self._core.waves(start, end)[0]
 
+    def _words(self) -> list[str]:
+        return [self.kind, f"{len(self.x)} points from {self.x[0]:g} to {self.x[-1]:g} m"]
+
     def _made(self) -> _core.Road:
         return _core.Road.profile(
             x=self.x,

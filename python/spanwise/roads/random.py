@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Final
 from spanwise import _core
 from spanwise._checks import choice, count, number, numbers, positive, shown
 from spanwise.roads._doubts import doubts_of_roughness
-from spanwise.roads.base import CONTACT_PATCH, Road
+from spanwise.roads.base import CONTACT_PATCH, Road, Sum
 from spanwise.roads.roughness import CLASSES
 
 #: IRI of a random road of waviness 2 over the square root of its G_d(n0) in 1e-6 m3 [m/km].
@@ -91,6 +91,11 @@ class ISO8608(Road):
     seed: int = 0
     sample: int = 0
 
+    def _words(self) -> list[str]:
+        letter = f" class {self.road_class}" if self.road_class else ""
+        sample = f" sample {self.sample}" if self.sample else ""
+        return [f"{self.kind}{letter}", f"G_d(n0) {self.G:.4g} m3", f"seed {self.seed}{sample}"]
+
     def _made(self) -> _core.Road:
         band = numbers("band", self.band)
         if len(band) != 2:
@@ -149,6 +154,20 @@ class ISO8608(Road):
             return table
         del table["G"]
         return {"kind": table.pop("kind"), "class": letter, **table}
+
+
+def is_random(road: Road) -> bool:
+    """Whether a seed makes a difference."""
+    return any(isinstance(each, ISO8608) for each in road._summands)
+
+
+def reseeded(road: Road, seed: int) -> Road:
+    """The road with another seed in all its random parts."""
+    if isinstance(road, ISO8608):
+        return replace(road, seed=seed)
+    if isinstance(road, Sum):
+        return Sum(tuple(reseeded(part, seed) for part in road.parts))
+    return road
 
 
 def bridge_study(condition: str, **options: Any) -> ISO8608:

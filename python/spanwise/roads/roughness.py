@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._checks import number, numbers, shown
-from spanwise._extras import require
+from spanwise._door import require
+from spanwise._table import Table
 from spanwise._value import Value, frozen
 
 if TYPE_CHECKING:
@@ -112,15 +113,23 @@ class IriSegments(Value):
         )
 
     def __str__(self) -> str:
-        rows = zip(self.starts, self.ends, self.values, strict=True)
-        lines = [f"{start:10.2f}{end:12.2f}{value:13.2f}" for start, end, value in rows]
-        return "\n".join([" start [m]     end [m]   IRI [m/km]", *lines])
+        return str(self._table)
+
+    def _repr_html_(self) -> str:
+        return self._table._repr_html_()
+
+    @property
+    def _columns(self) -> dict[str, Array]:
+        return {"start [m]": self.starts, "end [m]": self.ends, "IRI [m/km]": self.values}
+
+    @property
+    def _table(self) -> Table:
+        return Table([*self._columns], [*zip(*self._columns.values(), strict=True)], [".2f"] * 3)
 
     def to_pandas(self) -> pd.DataFrame:
         """Start, end and index of each segment, a row each; needs ``spanwise[pandas]``."""
         pandas = require("pandas", extra="pandas")
-        columns = {"start [m]": self.starts, "end [m]": self.ends, "IRI [m/km]": self.values}
-        frame: pd.DataFrame = pandas.DataFrame(columns)
+        frame: pd.DataFrame = pandas.DataFrame(self._columns)
         return frame
 
 

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._conditions import Conditions
-from spanwise._events import Event, Speeds, core_passage, is_simple
+from spanwise._events import Event, Speeds, is_simple
 from spanwise._plausible import doubts
 from spanwise._rows import Rows
 from spanwise._value import Value
 from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
-from spanwise.crossing import cross
+from spanwise.crossing import core_passage, cross
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.runs import Run
@@ -29,23 +29,13 @@ from spanwise.vehicle import Vehicle, bodies_of
 from spanwise.vehicles import AnyVehicle
 
 Array: TypeAlias = NDArray[np.float64]
-Quantity: TypeAlias = Literal["deflection", "moment", "shear", "reactions", "clamp_moments"]
 
 #: What static axle loads depend on: masses, and springs that share them out.
 SHARED_OUT: Final = ("body_mass", "tyre_stiffness", "suspension_stiffness")
 
 
-def cores(quantities: Sequence[str]) -> list[str]:
-    """The kinds of response that the core knows for these quantities."""
-    return [
-        name
-        for each in quantities
-        for name in (("shear_left", "shear_right") if each == "shear" else (each,))
-    ]
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class Recipe(Value):
+class Plan(Value):
     """What `ensemble` was asked for, checked.
 
     Attributes
@@ -70,7 +60,7 @@ class Recipe(Value):
     own: ISO8608 | None
     factors: list[Factors]
     conditions: Conditions
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[str, ...]
     advance: float | None
     settings: dict[str, Any]
 
@@ -80,14 +70,24 @@ class Recipe(Value):
         return len(self.events) > 1 or any(each.name in SHARED_OUT for each in self.factors)
 
     @property
+    def alike(self) -> bool:
+        """Whether all samples are the same crossing."""
+        varied = [each.values for each in self.factors]
+        for passage in self.event(0):
+            if passage.speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
+                varied.append(self.speeds.rows(self.samples))
+        constant = all((each == each[:1]).all() for each in varied)
+        return self.own is None and len(np.unique(self.kinds)) < 2 and constant
+
+    @property
     def front_speeds(self) -> Array:
         """Speeds of the first vehicles at the start [m/s]: of each sample, or of all."""
-        column = self.speeds.column
         own = [event[0].speed for event in self.events]
         if len(own) == 1 and own[0] is not None:
             return np.array([own[0]])
+        column = self.speeds.column
         if len(column) > 1:
-            column = column.reshape(self.samples, -1)[:, 0]
+            column = self.speeds.rows(self.samples)[:, 0]
         if all(each is None for each in own):
             return np.ascontiguousarray(column)
         by_kind = np.array([np.nan if each is None else each for each in own])[self.kinds]
@@ -97,9 +97,7 @@ class Recipe(Value):
     def speeds_of_all(self) -> Array:
         """Speeds at the start [m/s], shape (sample, 1) or (sample, vehicle); NaN if by time."""
         vehicles = max(map(len, self.events))
-        column = self.speeds.column
-        given = column.reshape(1 if len(column) == 1 else self.samples, -1)
-        found = np.broadcast_to(given, (self.samples, vehicles)).copy()
+        found = np.broadcast_to(self.speeds.rows(self.samples), (self.samples, vehicles)).copy()
         for number, event in enumerate(self.events):
             rows = self.kinds == number if len(self.events) > 1 else slice(None)
             for k in range(vehicles):
@@ -113,7 +111,7 @@ class Recipe(Value):
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
         varied = self.varies_loads
         loads = _core.static_loads(
-            [[core_passage(each, own_speed=True) for each in event] for event in self.events],
+            [[*map(core_passage, event)] for event in self.events],
             self.kinds if varied else self.kinds[:1],
             self.samples if varied else 1,
             [each.core for each in self.factors] if varied else [],
@@ -137,7 +135,7 @@ class Recipe(Value):
         if all(each.name.startswith("bridge_") for each in self.factors):
             return [each.vehicle for each in event]
         varied = _core.varied(
-            [core_passage(each, own_speed=True) for each in event],
+            [*map(core_passage, event)],
             [each.of(sample).core for each in self.factors],
         )
         return [_scaled(one.vehicle, core) for one, core in zip(event, varied, strict=True)]
@@ -173,8 +171,7 @@ class Recipe(Value):
 
         Each vehicle at the highest of its speeds at the start.
         """
-        column = self.speeds.column
-        speeds = column.reshape(1 if len(column) == 1 else self.samples, -1)
+        speeds = self.speeds.rows(self.samples)
         if len(self.events) == 1:
             most = speeds.max(axis=0, keepdims=True)
         else:

@@ -4,54 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import choice
-from spanwise._ensemblesummary import by_sense, governing
-from spanwise._extras import require
+from spanwise._door import require
 from spanwise._files import write_files
-from spanwise.columns import SampleExtremes
-from spanwise.population import Ensemble
-from spanwise.samples import FACTORS, Factor
+from spanwise.ensembles import By, Ensemble
+from spanwise.extremes import largest_of_each
+from spanwise.quantities import Response, factors
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Column: TypeAlias = tuple[str, NDArray[Any]]
-By: TypeAlias = Literal["sample", "section", "support", "clamp", "axle"]
 
 #: Rows of a CSV file that are written at a time.
 ROWS: Final = 100_000
-
-#: The quantities that have a row for each place of a kind.
-PLACES: Final[dict[str, tuple[str, ...]]] = {
-    "section": ("deflection", "moment", "shear"),
-    "support": ("reactions",),
-    "clamp": ("clamp_moments",),
-    "axle": ("axle_loads",),
-}
 
 
 def frame(ensemble: Ensemble, by: By) -> pd.DataFrame:
     """The table, as `Ensemble.to_pandas` describes it."""
     pandas = require("pandas", extra="pandas")
-    choice("by", by, ("sample", *PLACES))
+    choice("by", by, get_args(By))
     if by == "sample":
         numbers = ensemble.first + np.arange(ensemble.samples)
         index = pandas.Index(numbers, name="sample")
         table: pd.DataFrame = pandas.DataFrame(dict(_by_sample(ensemble)), index=index)
-        table.attrs["governing"] = {name: x for name, (_, x) in _governing(ensemble).items()}
+        table.attrs["governing"] = {
+            name: float(ensemble.envelope(of.name).x[ensemble.impact_factors.governing(name)])
+            for name, (of, _) in factors().items()
+            if of in ensemble.responses
+        }
         return table
-    names = [each for each in PLACES[by] if ensemble._looks_at(each)]
-    if not names:
+    there = [each for each in ensemble.responses if each.axis == by]
+    if not there:
         raise ValueError(f'by = "{by}": this ensemble has {", ".join(ensemble.quantities)}')
-    x = ensemble.envelope(names[0]).x
+    x = ensemble.envelope(there[0].name).x
     places = pandas.Index(x.astype(np.int64) if by == "axle" else x, name=by)
     numbers = pandas.Index(ensemble.first + np.arange(ensemble.samples), name="sample")
-    columns = {name: values.ravel() for name, values in _by_place(ensemble, names)}
+    columns = {name: values.ravel() for name, values in _by_place(ensemble, there)}
     rows = pandas.MultiIndex.from_product([numbers, places])
     by_place: pd.DataFrame = pandas.DataFrame(columns, index=rows)
     return by_place
@@ -75,58 +69,41 @@ def write_csv(ensemble: Ensemble, path: Path, by: By) -> None:
 
 
 def _by_sample(ensemble: Ensemble) -> Iterator[Column]:
-    recipe, count = ensemble._recipe, ensemble.samples
-    if len(recipe.events) > 1:
-        yield "kind", recipe.kinds.astype(np.int64)
-    yield from _spread("speed", recipe.speeds_of_all)
-    for each in recipe.factors:
+    plan, count = ensemble._plan, ensemble.samples
+    if len(plan.events) > 1:
+        yield "kind", plan.kinds.astype(np.int64)
+    yield from _spread("speed", plan.speeds_of_all)
+    for each in plan.factors:
         yield from _spread(each.name, np.broadcast_to(each.values, (count, each.values.shape[1])))
     failed = np.zeros(count, dtype=np.bool_)
     failed[[each.row for each in ensemble.failures]] = True
     yield "failed", failed
-    for name in (*ensemble.quantities, "axle_loads"):
-        extremes: SampleExtremes = ensemble.envelope(name)
-        yield f"{name}_max", _most(extremes.max)
-        yield f"{name}_min", -_most(-extremes.min)
-    for name, (where, _) in _governing(ensemble).items():
-        yield f"impact_factor_{name}", ensemble.impact_factors[name][:, where]
-    yield from _numbered("load_coefficient", ensemble.load_coefficients)
-    yield from _numbered("lift_offs", ensemble.off_road.count)
-    yield from _numbered("time_off_road", ensemble.off_road.total)
+    for of in ensemble.responses:
+        extremes = ensemble.envelope(of.name)
+        yield f"{of.name}_max", largest_of_each(extremes.max)
+        yield f"{of.name}_min", -largest_of_each(-extremes.min)
+    for name in ensemble.impact_factors.names:
+        governing = ensemble.impact_factors.governing(name)
+        yield f"impact_factor_{name}", ensemble.impact_factors[name][:, governing]
+    yield from _numbered("load_coefficient", ensemble.dynamic_load_coefficients)
+    yield from _numbered("lift_offs", ensemble.contact_loss.count)
+    yield from _numbered("time_off_road", ensemble.contact_loss.total)
     for side in ("max", "rms"):
         values = getattr(ensemble.body_accelerations, side)
         yield from _numbered(f"body_acceleration_{side}", values)
 
 
-def _by_place(ensemble: Ensemble, names: list[str]) -> Iterator[Column]:
-    for name in names:
-        extremes: SampleExtremes = ensemble.envelope(name)
+def _by_place(ensemble: Ensemble, responses: list[Response]) -> Iterator[Column]:
+    for of in responses:
+        extremes = ensemble.envelope(of.name)
         for side in ("max", "min"):
             for suffix in ("", "_time", "_position"):
-                yield f"{name}_{side}{suffix}", getattr(extremes, f"{side}{suffix}")
+                yield f"{of.name}_{side}{suffix}", getattr(extremes, f"{side}{suffix}")
         for side in ("static_max", "static_min"):
             values = getattr(extremes, side)
-            yield f"{name}_{side}", np.broadcast_to(values, extremes.max.shape)
-    for factor, (name, _) in FACTORS.items():
-        if name in names:
-            yield f"impact_factor_{factor}", ensemble.impact_factors[factor]
-
-
-def _governing(ensemble: Ensemble) -> dict[Factor, tuple[int, float]]:
-    """By impact factor, which section, support or axle governs, and where that is."""
-    found: dict[Factor, tuple[int, float]] = {}
-    for name, (quantity, sense) in FACTORS.items():
-        if ensemble._looks_at(quantity):
-            extremes: SampleExtremes = ensemble.envelope(quantity)
-            where = governing(*by_sense(extremes, sense))
-            found[name] = where, float(extremes.x[where])
-    return found
-
-
-def _most(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The largest of each row; NaN where there is none."""
-    most: NDArray[np.float64] = np.nanmax(values, axis=1, initial=-np.inf)
-    return np.where(np.isfinite(most), most, np.nan)
+            yield f"{of.name}_{side}", np.broadcast_to(values, extremes.max.shape)
+    for name in [each.name for of in responses for each in of.factors]:
+        yield f"impact_factor_{name}", ensemble.impact_factors[name]
 
 
 def _spread(name: str, values: NDArray[Any]) -> Iterator[Column]:

@@ -6,7 +6,6 @@ import errno
 import json
 import stat
 from collections.abc import Callable, Iterator, Mapping
-from inspect import signature
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 from zipfile import ZIP_STORED, BadZipFile, ZipFile
@@ -14,19 +13,18 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from spanwise import _core
-from spanwise._asked import recipe_of
+from spanwise._build import Maker
 from spanwise._files import write_files
-from spanwise._recipe import Recipe
+from spanwise._plain import plain
+from spanwise._plan import Plan
+from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._rows import Rows
-from spanwise._traffictable import is_alone, passage_of, passage_table
-from spanwise._values import from_plain, plain
-from spanwise._vehicletable import table_of, vehicle_of
-from spanwise.bridge import bridge_of
 from spanwise.damping import in_words
-from spanwise.population import Ensemble
-from spanwise.roads import Road, from_table
-from spanwise.samples import FACTORS
-from spanwise.traffic import Passage, plain_drive
+from spanwise.ensembles import Ensemble
+from spanwise.quantities import parts
+from spanwise.roads import Road
+from spanwise.schema import Reading, bridge_of, event_table, events_of
+from spanwise.traffic import plain_drive
 
 #: Percentiles of the plain values.
 PERCENTILES: Final = (1, 5, 25, 50, 75, 95, 99)
@@ -53,12 +51,12 @@ def arrays(ensemble: Ensemble) -> Iterator[tuple[str, Any]]:
     yield "damping", np.array(in_words(ensemble.settings["damping"], ensemble.frequencies))
     yield "hash", np.array(ensemble.hash)
     yield "failures", np.array([each.sample for each in ensemble.failures], dtype=np.uint64)
-    yield "lift_offs", ensemble.off_road.count
+    yield "lift_offs", ensemble.contact_loss.count
     for key, (low, high) in rows.columns.items():
         if key not in BY_QUANTITY and high > low:
             yield NAMES.get(key, key), rows.block(key)
-    for name in (*rows.widths, "axle_loads"):
-        extremes = ensemble._axle_loads() if name == "axle_loads" else ensemble._extremes(name)
+    for name in [name for name, of in parts().items() if ensemble._looks_at(of)]:
+        extremes = ensemble._extremes(name)
         for side in ("max", "min"):
             for suffix in ("", "_time", "_position"):
                 yield f"{name}_{side}{suffix}", getattr(extremes, f"{side}{suffix}")
@@ -115,17 +113,17 @@ def _read(archive: Any) -> Ensemble:
     if layout.pop("format") != FORMAT:
         raise ValueError("is of another version of spanwise")
     columns = {key: (int(low), int(high)) for key, (low, high) in layout.pop("columns").items()}
-    recipe = _recipe(from_plain(json.loads(str(archive["settings"]))))
+    plan = _plan(json.loads(str(archive["settings"])))
     width = max(high for _, high in columns.values())
-    numbers = np.empty((recipe.samples, width))
+    numbers = np.empty((plan.samples, width))
     axles = (columns["axle_loads"][1] - columns["axle_loads"][0]) // 2
     for name, start, end in _places(columns, layout["widths"], axles):
-        numbers[:, start:end] = _of_shape(archive, name, (recipe.samples, end - start))
+        numbers[:, start:end] = _of_shape(archive, name, (plan.samples, end - start))
     rows = Rows(
         numbers=numbers,
-        instants=_of_shape(archive, "instants", (recipe.samples, archive["instants"].shape[-1])),
-        digests=_of_shape(archive, "digests", (recipe.samples,)),
-        marches=_of_shape(archive, "marches", (recipe.samples,)),
+        instants=_of_shape(archive, "instants", (plan.samples, archive["instants"].shape[-1])),
+        digests=_of_shape(archive, "digests", (plan.samples,)),
+        marches=_of_shape(archive, "marches", (plan.samples,)),
         at_rest=archive["at_rest"],
         clock=_core.Clock(archive["clock"].tobytes()),
         sections=archive["sections"],
@@ -137,7 +135,7 @@ def _read(archive: Any) -> Ensemble:
     )
     if rows.hash != str(archive["hash"]):
         raise ValueError(f"hash = {archive['hash']}: is not that of its samples, {rows.hash}")
-    return Ensemble(recipe, rows)
+    return Ensemble(plan, rows)
 
 
 def _places(
@@ -169,42 +167,29 @@ def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
     return values
 
 
-def _recipe(tables: Mapping[str, Any]) -> Recipe:
+def _plan(tables: Mapping[str, Any]) -> Plan:
     """What `settings` tells, as `ensemble` would understand it."""
-    given = dict(tables["ensemble"])
-    events = [
-        [Passage(vehicle=vehicle_of(each["vehicle"], _nowhere))]
-        if isinstance(each, Mapping)
-        else [passage_of(one, Path(), _nowhere) for one in each]
-        for each in tables["events"]
-    ]
-    given["road"] = from_table(given["road"])
-    optional = dict.fromkeys(signature(recipe_of).parameters)
-    del optional["bridge"], optional["vehicle"]
-    recipe, _ = recipe_of(bridge_of(tables["bridge"]), events, **{**optional, **given})
-    return recipe
-
-
-def _nowhere(_: str) -> str:
-    return ""
+    reading = Reading()
+    events = events_of(tables["events"], reading.place("events"))
+    bridge = bridge_of(tables["bridge"], reading.place("bridge"))
+    asked = Maker(Asked).build(tables["ensemble"], reading.place("ensemble"))
+    return plan_of(bridge, [*map(list, events)], asked)[0]
 
 
 def settings(ensemble: Ensemble) -> dict[str, Any]:
     """What the ensemble was made of, in plain values, as a case file has it."""
-    recipe = ensemble._recipe
-    events = [
-        {"vehicle": table_of(event[0].vehicle)}
-        if is_alone(event)
-        else [passage_table(each) for each in event]
-        for event in recipe.events
-    ]
+    plan = ensemble._plan
     given = dict(ensemble.settings)
     road = given["road"]
     assert isinstance(road, Road)
     given["road"] = road.arguments
-    given["drive"] = plain_drive(recipe.drive)
+    given["drive"] = plain_drive(plan.drive)
     table: dict[str, Any] = plain(
-        {"bridge": recipe.bridge.arguments, "events": events, "ensemble": given}
+        {
+            "bridge": plan.bridge.arguments,
+            "events": [*map(event_table, plan.events)],
+            "ensemble": given,
+        }
     )
     return table
 
@@ -240,14 +225,13 @@ def as_dict(ensemble: Ensemble) -> dict[str, Any]:
         "settings": settings(ensemble),
     }
     if sound.any():
-        for name in (*ensemble.quantities, "axle_loads"):
-            extremes = ensemble.envelope(name)
-            found["extremes"][name] = {
+        for of in ensemble.responses:
+            extremes = ensemble.envelope(of.name)
+            found["extremes"][of.name] = {
                 side: _percentiles(getattr(extremes, side)) for side in ("max", "min")
             }
-        for factor, (name, _) in FACTORS.items():
-            if ensemble._looks_at(name):
-                found["impact_factors"][factor] = _percentiles(ensemble.impact_factors[factor])
+        for name in ensemble.impact_factors.names:
+            found["impact_factors"][name] = _percentiles(ensemble.impact_factors[name])
     table: dict[str, Any] = plain(found)
     return table
 

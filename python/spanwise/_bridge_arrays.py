@@ -8,22 +8,14 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise._build import Place, check_known
 from spanwise._checks import array, shown
-from spanwise._keys import suggestion
 from spanwise._warnings import PlausibilityWarning, warn
+from spanwise.quantities import of_bridges
 
 Array: TypeAlias = NDArray[np.float64]
 Sides: TypeAlias = tuple[Array, Array | None]
 Lines: TypeAlias = tuple[str, Sides, Sides | None, Array | None]
-
-QUANTITIES: Final = (
-    "deflection",
-    "moment",
-    "shear-left",
-    "shear-right",
-    "reaction",
-    "clamp-moment",
-)
 
 #: By how much modes may exceed the flexibility that they are part of, relative to it: frequencies
 #: printed to two digits may be off by 10 % in the square, while shapes scaled to unit modal mass in
@@ -144,10 +136,6 @@ def _table(key: str, value: object) -> Mapping[str, Any]:
         return {}
     if not isinstance(value, Mapping):
         raise ValueError(f"{key} = {shown(value)}: must name its responses: {{'moment': ...}}")
-    for name in value:
-        if name not in QUANTITIES:
-            hint = suggestion(name, QUANTITIES)
-            raise ValueError(
-                f"{key}: unknown response {shown(name)}{hint}; allowed: {', '.join(QUANTITIES)}"
-            )
+    known = [name for each in of_bridges() for name in each.lines]
+    check_known(value, known, Place(key), "response")
     return value
