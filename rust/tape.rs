@@ -1,7 +1,6 @@
 //! A tape: the numbers that steps leave for recovery (coordinates, axle loads, accelerations), kept chunk by chunk with the
 //! largest and smallest of each.
 
-use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 use crate::recovery::Rows;
 use crate::statics::quantity::{Quantity, Unit};
@@ -70,37 +69,28 @@ impl Widths {
         self.loads() + self.axles
     }
 
-    /// Writes the coordinates of a step down, by the state of each mode; on a bridge at rest there are none yet.
+    /// Writes the coordinates of a step down, by the derivatives of each mode in time; on a bridge at rest there are none
+    /// yet.
     #[inline(always)]
     pub fn write_modes<L: Lane>(
         &self,
         row: &mut [L],
         modes: usize,
-        mode: impl Fn(usize) -> Coordinate<L>,
+        derivative: impl Fn(usize, usize) -> L,
         factors: Option<&BridgeFactors<L>>,
     ) {
-        let Widths { coordinates, axles, felt, orders: [values, velocities, accelerations], .. } = *self;
+        let Widths { coordinates, axles, felt, orders, .. } = *self;
         if modes == 0 {
             row[..coordinates].fill(L::splat(0.0));
-        }
-        let mut left = &mut row[..if modes == 0 { 0 } else { coordinates }];
-        if values && modes > 0 {
-            let (own, rest) = left.split_at_mut(modes);
-            for (m, a) in own.iter_mut().enumerate() {
-                *a = factors.map_or(mode(m).x, |f| f.coordinates * mode(m).x);
-            }
-            left = rest;
-        }
-        if velocities && modes > 0 {
-            let (own, rest) = left.split_at_mut(modes);
-            for (m, a) in own.iter_mut().enumerate() {
-                *a = factors.map_or(mode(m).v, |f| f.rates * mode(m).v);
-            }
-            left = rest;
-        }
-        if accelerations {
-            for (m, a) in left.iter_mut().enumerate() {
-                *a = mode(m).a;
+        } else {
+            let mut left = row[..coordinates].chunks_exact_mut(modes);
+            for order in 0..3 {
+                let Some(own) = orders[order].then(|| left.next()).flatten() else { continue };
+                let factor = factors.and_then(|factors| [Some(factors.coordinates), Some(factors.rates), None][order]);
+                for (m, value) in own.iter_mut().enumerate() {
+                    let derivative = derivative(order, m);
+                    *value = factor.map_or(derivative, |factor| factor * derivative);
+                }
             }
         }
         if !felt {

@@ -23,7 +23,7 @@ from spanwise._plan import Plan
 from spanwise._variation import by_parameter, factors_of, refuse_overdamped
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
-from spanwise.quantities import of_bridges, there_are
+from spanwise.quantities import RESPONSES, of_bridges, there_are
 from spanwise.roads import Road
 
 #: Most samples: they are numbered in 32 bits.
@@ -131,11 +131,16 @@ def all_quantities(bridge: Bridge) -> list[str]:
     return [each.name for each in there_are(bridge.missing, clamps=len(bridge.clamps) > 0)]
 
 
+def usual_quantities(bridge: Bridge) -> list[str]:
+    """What is looked at unless others are asked for."""
+    return [name for name in all_quantities(bridge) if RESPONSES[name].usual]
+
+
 def _quantities(bridge: Bridge, wanted: Sequence[str] | None) -> list[str]:
     """What is looked at, in the order of the responses."""
     there = all_quantities(bridge)
     if wanted is None:
-        return there
+        return usual_quantities(bridge)
     known = [each.name for each in there_are(bridge.missing, clamps=True)]
     for i, each in enumerate(wanted):
         if each not in there:

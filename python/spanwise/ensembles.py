@@ -15,7 +15,7 @@ from spanwise._checks import file_path, is_list, items, named, shown, whole
 from spanwise._conditions import masked
 from spanwise._door import view
 from spanwise._plan import Plan
-from spanwise._plan_of_arguments import all_quantities
+from spanwise._plan_of_arguments import usual_quantities
 from spanwise._plausible import doubts_of_roads
 from spanwise._renamed import Renamed, renamed
 from spanwise._rows import Rows
@@ -359,7 +359,7 @@ class Ensemble:
                 raise RuntimeError(
                     f"row {row}: sample number {each.sample} failed{step}: {each.cause}"
                 )
-        if tail is None and len(self.quantities) < len(all_quantities(self.bridge)):
+        if tail is None and list(self.quantities) != usual_quantities(self.bridge):
             # As long as it was for what was looked at.
             tail = float(self.tail[row])
         return self._plan.run(row, self._rows, tail)

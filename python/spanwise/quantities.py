@@ -73,6 +73,8 @@ class Response:
         The extremes that summaries show always; others only where they are worth it.
     factors : tuple of Factor
         Impact factors that there are of it.
+    usual : bool
+        Whether ensembles look at it unless told what to look at.
     """
 
     name: str
@@ -85,6 +87,7 @@ class Response:
     influence: bool = True
     reported: tuple[Sense, ...] = ("either",)
     factors: tuple[Factor, ...] = ()
+    usual: bool = True
 
     @property
     def noun(self) -> str:
@@ -174,6 +177,34 @@ _ROWS: Final = (
         downward=True,
     ),
     Response(
+        "slope",
+        unit="rad",
+        axis="section",
+        signs=("down to the right", "up to the right"),
+        title="Slope of the deflection",
+        usual=False,
+    ),
+    Response(
+        "velocity",
+        unit="m/s",
+        axis="section",
+        signs=("down", "up"),
+        title="Deck velocity, down",
+        downward=True,
+        influence=False,
+        usual=False,
+    ),
+    Response(
+        "acceleration",
+        unit="m/s2",
+        axis="section",
+        signs=("down", "up"),
+        title="Deck acceleration, down",
+        downward=True,
+        influence=False,
+        usual=False,
+    ),
+    Response(
         "axle_loads",
         unit="N",
         axis="axle",
@@ -186,18 +217,6 @@ _ROWS: Final = (
 
 #: All by name, in the order of the core.
 RESPONSES: Final = {each.name: each for each in _ROWS}
-
-#: Of which bridges have influence lines, but crossings no histories.
-LINES_ONLY: Final = (
-    Response(
-        "slope",
-        unit="rad",
-        axis="section",
-        signs=("down to the right", "up to the right"),
-        title="Slope of the deflection",
-    ),
-)
-
 
 def of_bridges() -> list[Response]:
     """Those of the bridge itself: all but axle loads."""
@@ -220,7 +239,7 @@ def parts(*, whole: bool = False) -> dict[str, Response]:
 
 def influence_lines() -> dict[str, Response]:
     """Influence lines by name."""
-    return {name: each for each in (*of_bridges(), *LINES_ONLY) for name in each.lines}
+    return {name: each for each in of_bridges() for name in each.lines}
 
 
 def response(quantity: str) -> Response:

@@ -191,6 +191,21 @@ class Run(Responses):
         return frozen(self._core.states("axle_loads"))
 
     @cached_property
+    def quasi_static_acceleration(self) -> Array:
+        """What the modes left out add to the acceleration of the deck [m/s2], shape (time, section).
+
+        They carry the loads without inertia, and as these move on, so does what they carry. Exact
+        for constant forces; of sprung vehicles without the change of the loads. To be added to
+        ``acceleration``, which is that of the included modes alone.
+
+        Raises
+        ------
+        ValueError
+            If the recovery is not force summation.
+        """
+        return frozen(self._core.quasi_static_acceleration())
+
+    @cached_property
     def dynamic_load_coefficients(self) -> Array:
         """How much the axle loads vary about their static values [-], shape (axle,).
 

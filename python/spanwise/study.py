@@ -117,7 +117,8 @@ def ensemble(
     sections : sequence of float, optional
         Where to look [m], ascending, as for `cross`.
     quantities : sequence of str, optional
-        What to look at, by default all there are; shears on both sides of a section:
+        What to look at, by default all that follows from statics; slope, velocity and acceleration
+        of the deck only if asked for; shears on both sides of a section:
 
         {bridge}
     advance : float, optional

@@ -155,9 +155,8 @@ impl History {
 
     /// Writes down what the rows multiply at a step, on a bridge that may be varied by `factors`.
     pub fn write(&self, step: usize, widths: &Widths, factors: Option<&BridgeFactors<f64>>, row: &mut [f64]) {
-        let of = |all: &[f64], m: usize| all[step * self.modes + m];
-        let mode = |m: usize| Coordinate { x: of(&self.a, m), v: of(&self.a_dot, m), a: of(&self.a_ddot, m) };
-        widths.write_modes(row, self.modes, mode, factors);
+        let states = [&self.a, &self.a_dot, &self.a_ddot].map(|all| &all[step * self.modes..][..self.modes]);
+        widths.write_modes(row, self.modes, |order, m| states[order][m], factors);
         if widths.felt {
             let loads = &self.loads[step * self.axles..][..self.axles];
             row[widths.coordinates..].iter_mut().zip(loads).for_each(|(own, load)| *own = *load);

@@ -150,7 +150,12 @@ impl<L: Lane> Traveller<'_, '_, L> {
     #[inline(always)]
     fn keep(&self, kept: &mut [L], widths: &Widths) {
         let State { modes, increments, coordinates, .. } = &self.state;
-        widths.write_modes(kept, modes.len(), |m| modes[m], self.group.bridge.as_ref());
+        let derivative = |order: usize, m: usize| match order {
+            0 => modes[m].x,
+            1 => modes[m].v,
+            _ => modes[m].a,
+        };
+        widths.write_modes(kept, modes.len(), derivative, self.group.bridge.as_ref());
         let loads = kept[widths.loads()..][..widths.axles].iter_mut();
         for ((load, at_rest), increment) in loads.zip(&self.static_loads).zip(increments) {
             *load = *at_rest + *increment;

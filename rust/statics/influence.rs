@@ -155,13 +155,13 @@ impl Responses {
         Responses { sections, ranges: ranges.to_vec(), held, lines }
     }
 
-    /// Only some of the kinds, and motion at the sections, of which there are no lines.
+    /// Only some of the kinds; what is not there and looked at at sections has no lines, as motion has none.
     pub fn of_quantities(&self, quantities: &[Quantity], mesh: &Mesh) -> Self {
         let (mut ranges, mut lines) = (Vec::with_capacity(quantities.len()), Vec::new());
         for &quantity in quantities {
             let first = lines.len();
-            match quantity.order() {
-                0 => lines.extend_from_slice(&self.lines[self.range(quantity)]),
+            match self.range(quantity) {
+                own if !own.is_empty() || quantity.at() != At::Sections => lines.extend_from_slice(&self.lines[own]),
                 _ => lines.resize(first + self.sections.len(), Line::straight(mesh, 0.0, 0.0)),
             }
             ranges.push((quantity, first..lines.len()));
