@@ -213,8 +213,8 @@ def test_without_a_factor_there_is_a_dash(monkeypatch: pytest.MonkeyPatch) -> No
     assert line.endswith(" -")
 
 
-#: What is spoken of by itself: what axles weigh, and where the bridge bends most.
-OWN = {"deflection", "moment", "axle_loads"}
+#: What is spoken of by itself: what axles weigh, where the bridge bends most, how things move.
+OWN = {"deflection", "moment", "axle_loads", "velocity", "acceleration"}
 
 
 def test_nothing_else_names_a_response() -> None:

