@@ -218,6 +218,7 @@ _ROWS: Final = (
 #: All by name, in the order of the core.
 RESPONSES: Final = {each.name: each for each in _ROWS}
 
+
 def of_bridges() -> list[Response]:
     """Those of the bridge itself: all but axle loads."""
     return [each for each in RESPONSES.values() if each.axis != "axle"]

@@ -193,7 +193,7 @@ class Run(Responses):
 
     @cached_property
     def quasi_static_acceleration(self) -> Array:
-        """What the modes left out add to the acceleration of the deck [m/s2], shape (time, section).
+        """What the modes left out add to ``acceleration`` [m/s2], shape (time, section).
 
         They carry the loads without inertia, and as these move on, so does what they carry. Exact
         for constant forces; of sprung vehicles without the change of the loads. To be added to

@@ -1,11 +1,11 @@
-"""High-speed load model A of EN 1991-2 (table 6.3) on a simple beam of 25 m, ten speeds a train.
+"""High-speed load model A of EN 1991-2 (table 6.3) on a simple beam of 25 m, at eleven speeds.
 
-Fifteen tonnes a metre, EI 30e9 N m2, three modes with 1 % of critical damping, sections 1.25 m apart,
-the whole passage and a second after it. Deflections with the statics of the higher modes,
-accelerations of the three modes alone: as BeamDyn (A. Andersson, KTH, 2026) prints them, which shares
-no code with this program. Its static deflections are low by 0.25 %, because it shares each axle
-between the two nodes beside it, 1.25 m apart; with the chords of the influence line they come out to
-the last digit.
+Fifteen tonnes a metre, EI 30e9 N m2, three modes with 1 % of critical damping, sections 1.25 m
+apart, the whole passage and a second after it. Deflections with the statics of the higher modes,
+accelerations of the three modes alone: as BeamDyn (A. Andersson, KTH, 2026) prints them, which
+shares no code with this program. Its static deflections are low by 0.25 %, because it shares each
+axle between the two nodes beside it, 1.25 m apart; with the chords of the influence line they come
+out to the last digit.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ DEFLECTIONS: Final = {
     "A9": [9.53, 12.258, 10.599, 11.237, 13.325, 15.141, 23.141, 57.961, 30.167, 17.0, 13.76],
 }
 
-#: Largest acceleration of the deck by speed [m/s2]. The last of A4 is by the exact recurrence of modes
-#: under forces linear in time between instants of 20 us; BeamDyn prints 3.129.
+#: Largest acceleration of the deck by speed [m/s2]. The last of A4 is by the exact recurrence of
+#: modes under forces linear in time between instants of 20 us; BeamDyn prints 3.129.
 ACCELERATIONS: Final = {
     "A1": [1.243, 1.033, 0.944, 3.882, 2.572, 2.118, 2.206, 2.707, 2.603, 2.536, 2.027],
     "A3": [1.3, 1.474, 1.179, 2.069, 10.057, 4.933, 2.942, 2.997, 2.614, 2.545, 2.131],
