@@ -79,19 +79,26 @@ impl Widths {
         derivative: impl Fn(usize, usize) -> L,
         factors: Option<&BridgeFactors<L>>,
     ) {
-        let Widths { coordinates, axles, felt, orders, .. } = *self;
+        let Widths { coordinates, axles, felt, orders: [values, velocities, accelerations], .. } = *self;
+        let mut left = &mut row[..coordinates];
         if modes == 0 {
-            row[..coordinates].fill(L::splat(0.0));
-        } else {
-            let mut left = row[..coordinates].chunks_exact_mut(modes);
-            for order in 0..3 {
-                let Some(own) = orders[order].then(|| left.next()).flatten() else { continue };
-                let factor = factors.and_then(|factors| [Some(factors.coordinates), Some(factors.rates), None][order]);
-                for (m, value) in own.iter_mut().enumerate() {
-                    let derivative = derivative(order, m);
-                    *value = factor.map_or(derivative, |factor| factor * derivative);
-                }
+            left.fill(L::splat(0.0));
+            left = &mut [];
+        }
+        if values {
+            for (m, own) in left.iter_mut().take(modes).enumerate() {
+                *own = factors.map_or(derivative(0, m), |factors| factors.coordinates * derivative(0, m));
             }
+            left = left.get_mut(modes..).unwrap_or_default();
+        }
+        if velocities {
+            for (m, own) in left.iter_mut().take(modes).enumerate() {
+                *own = factors.map_or(derivative(1, m), |factors| factors.rates * derivative(1, m));
+            }
+            left = left.get_mut(modes..).unwrap_or_default();
+        }
+        if accelerations {
+            left.iter_mut().enumerate().for_each(|(m, own)| *own = derivative(2, m));
         }
         if !felt {
             row[coordinates..][..axles].fill(L::splat(0.0));

@@ -155,8 +155,8 @@ impl History {
 
     /// Writes down what the rows multiply at a step, on a bridge that may be varied by `factors`.
     pub fn write(&self, step: usize, widths: &Widths, factors: Option<&BridgeFactors<f64>>, row: &mut [f64]) {
-        let states = [&self.a, &self.a_dot, &self.a_ddot].map(|all| &all[step * self.modes..][..self.modes]);
-        widths.write_modes(row, self.modes, |order, m| states[order][m], factors);
+        let derivative = |order: usize, m: usize| [&self.a, &self.a_dot, &self.a_ddot][order][step * self.modes + m];
+        widths.write_modes(row, self.modes, derivative, factors);
         if widths.felt {
             let loads = &self.loads[step * self.axles..][..self.axles];
             row[widths.coordinates..].iter_mut().zip(loads).for_each(|(own, load)| *own = *load);
