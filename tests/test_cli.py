@@ -48,7 +48,8 @@ gap = 0.05
 depth = 0.02
 """
 
-FIGURES = ("model", "deflection", "moment", "shear", "impact_factors", "vehicle")
+MOTION = ("slope", "velocity", "acceleration")
+FIGURES = ("model", "deflection", "moment", "shear", *MOTION, "impact_factors", "vehicle")
 
 
 def left(folder: Path) -> set[str]:

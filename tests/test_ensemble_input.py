@@ -144,7 +144,7 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         {"quantities": ["momentum"]},
         ValueError,
         "quantities[0] = 'momentum': must be one of deflection, moment, shear, reactions, "
-        "clamp_moments (did you mean 'moment'?)",
+        "clamp_moments, slope, velocity, acceleration (did you mean 'moment'?)",
     ),
     (TRUCK, {"quantities": ["clamp_moments"]}, ValueError, "no support of this bridge holds"),
     (TRUCK, {"advance": 0.0}, ValueError, "advance = 0: must be finite and greater than 0"),

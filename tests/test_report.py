@@ -18,7 +18,8 @@ import spanwise as sw
 from spanwise._files import write_files
 from spanwise._run_files import as_dict
 
-QUANTITIES = ["deflection", "moment", "shear", "reactions", "axle_loads"]
+MOTION = ["slope", "velocity", "acceleration"]
+QUANTITIES = ["deflection", "moment", "shear", "reactions", *MOTION, "axle_loads"]
 
 
 @pytest.fixture(scope="module")
@@ -288,7 +289,8 @@ def test_envelopes(tmp_path: Path, run: sw.Run) -> None:
         envelope = run.envelope(quantity)
         head, body = rows(tmp_path / f"envelope_{quantity}.csv")
         columns = dict(zip(head, numbers(body).T, strict=True))
-        unit = "N m" if "moment" in quantity else "m" if quantity == "deflection" else "N"
+        units = {"deflection": "m", "slope": "rad", "velocity": "m/s", "acceleration": "m/s2"}
+        unit = "N m" if "moment" in quantity else units.get(quantity, "N")
         assert_array_equal(columns["axle" if quantity == "axle_loads" else "x [m]"], envelope.x)
         assert_array_equal(columns[f"max [{unit}]"], envelope.max.value)
         assert_array_equal(columns[f"max_partner [{unit}]"], envelope.max.partner)
