@@ -254,12 +254,13 @@ impl History {
     /// The ride of each vehicle: extremes until the last vehicle has left the bridge, means while its own axles are on it.
     /// `bodies` are the vertical displacements of its bodies, as rows over its coordinates.
     pub fn rides(&self, bodies: &[Vec<Vec<f64>>], mesh: &Mesh, stop: StopToken<'_>) -> Result<Vec<Ride<f64>>, Error> {
-        let mut tape = Tape::new();
-        let rides = self.vehicles.iter().zip(bodies).map(|(VehicleColumns { axles, motion, .. }, bodies)| {
-            let widths =
-                Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, orders: [false; 3] };
+        let (mut rides, mut tape) = (Vec::with_capacity(self.vehicles.len()), Tape::new());
+        for (VehicleColumns { axles, motion, .. }, bodies) in self.vehicles.iter().zip(bodies) {
+            let (axles, static_loads) = (axles.clone(), &self.static_loads[axles.clone()]);
+            let orders = [false; 3];
+            let widths = Widths { coordinates: 0, axles: axles.len(), bodies: bodies.len(), felt: true, orders };
             let mut ride = Ride::nothing(axles.len(), bodies.len());
-            let there = self.on_bridge(axles, mesh);
+            let there = self.on_bridge(&axles, mesh);
             let (before, after) = (0..there.start, there.end..self.last_on + 1);
             for (steps, counted) in [(before, false), (there, true), (after, false)] {
                 for from in steps.clone().step_by(CHUNK) {
@@ -268,7 +269,8 @@ impl History {
                     for step in from..to {
                         let [_, row] = tape.row_mut(step);
                         let (loads, accelerations) = row.split_at_mut(axles.len());
-                        loads.copy_from_slice(&self.loads[step * self.axles..][axles.clone()]);
+                        let own = &self.loads[step * self.axles..][axles.clone()];
+                        loads.iter_mut().zip(own).for_each(|(load, own)| *load = *own);
                         let motion = &self.motion[step * self.motion_width()..][motion.clone()];
                         for (acceleration, body) in accelerations.iter_mut().zip(bodies) {
                             let terms = body.iter().zip(motion.iter().skip(2).step_by(3));
@@ -276,13 +278,13 @@ impl History {
                         }
                     }
                     tape.take(to - from);
-                    ride.take(&tape, &self.static_loads[axles.clone()], |step| self.left(step), counted);
+                    ride.take(&tape, static_loads, |step| self.left(step), counted);
                     stop.check()?;
                 }
             }
-            Ok(ride)
-        });
-        rides.collect()
+            rides.push(ride);
+        }
+        Ok(rides)
     }
 
     /// Length of the step after this one, in whole steps; zero once the last vehicle has left.

@@ -328,6 +328,9 @@ impl<'a> TimeLoop<'a> {
             let left = self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path;
             let to_stand = course.motion.stands_from().map(|stands| course.entry + stands);
             let stands = self.history.vehicles[v].stopped.or(to_stand.filter(|at| time >= at - 1e-9 * self.h));
+            if stands.is_none() && !left {
+                continue;
+            }
             let row = &self.history.positions[(self.history.len() - 1) * self.history.axles..];
             let there = row[course.axles.clone()].iter().any(|&x| self.mesh.is_on(x));
             match stands {
@@ -337,8 +340,7 @@ impl<'a> TimeLoop<'a> {
                     self.ended[v] = Some(stands);
                     self.loaded |= there;
                 }
-                _ if left => self.ended[v] = Some(self.passed(v, own, self.length, time)),
-                _ => {}
+                _ => self.ended[v] = Some(self.passed(v, own, self.length, time)),
             }
         }
     }
