@@ -104,6 +104,8 @@ pub struct TimeLoop<'a> {
     ended: Vec<Option<f64>>,
     /// Whether one stands on the bridge.
     loaded: bool,
+    /// The way at which the last axle of each vehicle has left the bridge, but for rounding [m].
+    beyond: Vec<f64>,
     /// When each vehicle began to brake.
     braking_since: Vec<Option<f64>>,
 }
@@ -161,6 +163,10 @@ impl<'a> TimeLoop<'a> {
             history,
             ended: vec![None; courses.len()],
             loaded: false,
+            beyond: courses
+                .iter()
+                .map(|course| length - 1e-12 * (settings.approach + length + course.wheelbase()))
+                .collect(),
             braking_since: vec![None; courses.len()],
         }
     }
@@ -324,8 +330,7 @@ impl<'a> TimeLoop<'a> {
                 continue;
             }
             let own = course.behind.len() - 1;
-            let path = self.settings.approach + self.length + course.wheelbase();
-            let left = self.way(v, own, self.history.len() - 1) >= self.length - 1e-12 * path;
+            let left = self.way(v, own, self.history.len() - 1) >= self.beyond[v];
             let to_stand = course.motion.stands_from().map(|stands| course.entry + stands);
             let stands = self.history.vehicles[v].stopped.or(to_stand.filter(|at| time >= at - 1e-9 * self.h));
             if stands.is_none() && !left {
