@@ -34,7 +34,8 @@ class Computed:
         core: _core.Crossing,
     ) -> None:
         self.bridge, self.passages = bridge, passages
-        self._asked = {key: asked[key] for key in ASKED}
+        # Where it was looked at, also if that was not asked for.
+        self._asked = {key: asked[key] for key in ASKED} | {"sections": core.sections.tolist()}
         self._histories: dict[str, list[Array]] = {}
         # In place of what would be made of the states.
         self.__dict__["core"] = core

@@ -66,7 +66,8 @@ def _blocks(ensemble: Ensemble) -> Iterator[Block]:
     if ensemble.samples > len(ensemble.failures):
         yield _extremes(ensemble)
         yield _factors(ensemble)
-        yield _largest(ensemble)
+        if (largest := _largest(ensemble)).rows:
+            yield largest
         if few := [*_few(ensemble)]:
             yield few
         yield [*_ride(ensemble), *_failures(ensemble)]
@@ -269,10 +270,11 @@ def _few(ensemble: Ensemble) -> Iterator[str]:
 
 def _ride(ensemble: Ensemble) -> Iterator[str]:
     coefficients = np.nanmean(ensemble.dynamic_load_coefficients, axis=0)
-    yield (
-        "root mean square of the axle loads about their static values, on the bridge, mean of the "
-        f"samples: {listed(100.0 * coefficients, '.1f')} %"
-    )
+    if coefficients.any():
+        yield (
+            "root mean square of the axle loads about their static values, on the bridge, mean of "
+            f"the samples: {listed(100.0 * coefficients, '.1f')} %"
+        )
     off = (ensemble.contact_loss.count > 0).any(axis=1).sum()
     if off > 0:
         longest = np.nanmax(ensemble.contact_loss.total)

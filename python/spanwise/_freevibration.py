@@ -33,7 +33,7 @@ class Growth:
     x : float
         The section, support or clamp where it can grow most [m].
     recorded : float
-        The extreme there [m, N m or N].
+        The extreme there in SI units.
     reach : float
         What free vibration can reach there: a bound, no value that it must come to.
     """

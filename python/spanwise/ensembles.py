@@ -233,6 +233,9 @@ class Ensemble:
     def __getattr__(self, name: str) -> Any:
         """Attributes that have other names now; those of `Run` alike are histories."""
         of = parts(whole=True).get(name)
+        if of is not None and not of.usual:
+            hint = f"its extremes are envelope({of.name!r})"
+            raise AttributeError(f"'Ensemble' object has no attribute {name!r}: {hint}")
         if of is not None:
             renamed(f"Ensemble.{name}", f'Ensemble.envelope("{name}")')
             if not self._looks_at(of):

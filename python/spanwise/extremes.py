@@ -29,7 +29,7 @@ class Extremes(Value):
     Attributes
     ----------
     value : ndarray
-        The extremes [m, N m or N].
+        The extremes in SI units.
     time : ndarray
         When they occur [s].
     position : ndarray
@@ -112,7 +112,7 @@ class SampleExtremes(Value):
     x : ndarray, shape (section,)
         Positions of the sections, supports or clamps [m]; for axle loads the axles' numbers from 1.
     max, min : ndarray, shape (sample, section)
-        Largest and smallest dynamic values [m, N m or N].
+        Largest and smallest dynamic values in SI units.
     static_max, static_min : ndarray, shape (section,) or (sample, section)
         Those of the response to the static axle loads; the second where samples differ in them.
     """

@@ -202,7 +202,7 @@ class Run(Responses):
         Raises
         ------
         ValueError
-            If the recovery is not force summation.
+            If the recovery is not ``"force-summation"``.
         """
         return frozen(self._core.quasi_static_acceleration())
 

@@ -268,8 +268,10 @@ impl Analysis {
     /// [`History::quasi_static_acceleration`]. Only by force summation.
     pub fn quasi_static_acceleration(&self, outcome: &Outcome, stop: StopToken<'_>) -> Result<Vec<f64>, Error> {
         if self.rows.weight() == 0.0 || self.rows.by_rates() {
-            let allowed = "only with recovery = \"force-summation\", which adds what the modes left out carry";
-            return Err(Error::input("quasi_static", "true", allowed));
+            let recovery = if self.rows.by_rates() { "force-summation-by-rates" } else { "superposition" };
+            let allowed =
+                "quasi_static_acceleration needs \"force-summation\", which adds what the modes left out carry";
+            return Err(Error::input("recovery", format!("\"{recovery}\""), allowed));
         }
         let _mode = Standard::set();
         outcome.history.quasi_static_acceleration(&self.rows, self.responses.range(Quantity::Deflection), stop)

@@ -27,8 +27,15 @@ def column(run: Run, of: Response, at: float | None, side: Side | None) -> tuple
     if side is not None:
         choice("side", side, get_args(Side))
     if at is None:
-        largest = np.maximum(np.abs(envelope.static_max.value), np.abs(envelope.static_min.value))
-        index = int(largest.argmax())
+        at_rest, dynamic = (
+            np.maximum(np.abs(upper.value), np.abs(lower.value))
+            for upper, lower in (
+                (envelope.static_max, envelope.static_min),
+                (envelope.max, envelope.min),
+            )
+        )
+        # Deck motion has no static value.
+        index = int((at_rest if at_rest.any() else dynamic).argmax())
     else:
         at = finite("at", at)
         index = int(np.abs(envelope.x - at).argmin())

@@ -181,7 +181,7 @@ class RunPlot:
             {responses}
         at : float, optional
             The section, support or clamp [m], or the number of the axle from 1; by default the one
-            with the largest static value.
+            with the largest static value, of deck motion with the largest of all.
         side : {"left", "right"}, optional
             Side of the section at which the shear is taken; by default the right one, but at the
             right end of the bridge the left one.
