@@ -47,7 +47,7 @@ impl Crossing {
             "shear" => Quantity::ShearLeft,
             name => quantity(name)?,
         };
-        Ok(interruptible(py, |stop| self.analysis.envelope_of(&self.outcome, quantity, stop))?)
+        interruptible(py, |stop| self.analysis.envelope_of(&self.outcome, quantity, stop))
     }
 }
 
