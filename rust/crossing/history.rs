@@ -304,13 +304,19 @@ impl History {
         assemblies: impl Iterator<Item = &'a Assembly>,
     ) {
         self.time.push(time);
-        self.positions.extend((0..self.axles).map(|k| geometry.motion(k).x));
-        self.loads.extend(self.static_loads.iter().zip(&state.increments).map(|(at_rest, more)| at_rest + more));
-        self.elevations.extend((0..self.axles).map(|k| geometry.surface(k).elevation));
-        self.rubbing.extend(state.strokes[self.axles..].iter().map(|stroke| stroke.friction));
-        self.a.extend(state.modes.iter().map(|mode| mode.x));
-        self.a_dot.extend(state.modes.iter().map(|mode| mode.v));
-        self.a_ddot.extend(state.modes.iter().map(|mode| mode.a));
+        for k in 0..self.axles {
+            self.positions.push(geometry.motion(k).x);
+            self.loads.push(self.static_loads[k] + state.increments[k]);
+            self.elevations.push(geometry.surface(k).elevation);
+        }
+        for stroke in &state.strokes[self.axles..] {
+            self.rubbing.push(stroke.friction);
+        }
+        for mode in &state.modes {
+            self.a.push(mode.x);
+            self.a_dot.push(mode.v);
+            self.a_ddot.push(mode.a);
+        }
         let mut first = 0;
         for ((vehicle, assembly), travel) in self.vehicles.iter().zip(assemblies).zip(&state.travel) {
             let coordinates = &state.coordinates[first..first + assembly.mass.nrows()];
