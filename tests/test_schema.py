@@ -183,6 +183,7 @@ REFUSED = [
         "[ensemble]\nroad = { kind = 'step' }",
         r"^case, \[ensemble\]: unknown key 'road' \(a table of its own, \[road\]\)",
     ),
+    ("[ensemble]\nsample = 2", r"unknown key 'sample' \(did you mean 'samples'\?\)"),
     ("[crossing]\nsamples = 2", r"unknown key 'samples' \(belongs in \[ensemble\]\)"),
     ("[crossing]\nspeed = '20'", r"^case, \[crossing\]: speed = '20': must be a number$"),
     ("[crossing]\nmodes = 2.5", r"^case, \[crossing\]: modes = 2\.5: must be a whole number$"),

@@ -73,7 +73,10 @@ def check_known(
     """Refuses unknown keys, with the table where they belong or else the nearest known key."""
     for key in table:
         if key not in known:
-            hint = (place.home(key) if isinstance(key, str) else "") or suggestion(key, known)
+            home = place.home(key) if isinstance(key, str) else ""
+            # One and many are mistaken before tables are.
+            many = [each for each in known if each.removesuffix("s") == str(key).removesuffix("s")]
+            hint = suggestion(key, many) or home or suggestion(key, known)
             raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {', '.join(known)}")
 
 

@@ -68,7 +68,8 @@ def belongs(key: str, tables: Places | None = None) -> str:
         next((place for place, keys in each.items() if key in keys), "")
         for each in (tables or places()).values()
     ]
-    return f" (belongs in {', '.join(filter(None, found))})" if any(found) else ""
+    # What is likelier to be meant has the shorter name.
+    return f" (belongs in {', '.join(sorted(filter(None, found), key=len))})" if any(found) else ""
 
 
 @dataclass(frozen=True)
