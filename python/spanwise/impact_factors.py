@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
@@ -28,15 +29,16 @@ DEFINITIONS: Final = {
 }
 
 
-class ByName:
+class ByName(ABC):
     """Factors as attributes, and by ``[name]``."""
 
     def __getitem__(self, quantity: str) -> Array:
         """Those of one kind by its name."""
         return self._of(named("quantity", quantity, factors()))
 
+    @abstractmethod
     def _of(self, name: str) -> Array:
-        raise NotImplementedError
+        """Those of one kind."""
 
     def __getattr__(self, name: str) -> Array:
         if name in factors():

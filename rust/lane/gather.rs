@@ -82,7 +82,7 @@ impl<L: Lane, T: Gather<L>> Gather<L> for Option<T> {
     where
         T: 'a,
     {
-        each(0).as_ref().map(|_| T::gather(|sample| each(sample).as_ref().expect("all samples go the same ways")))
+        each(0).as_ref().map(|first| T::gather(|sample| each(sample).as_ref().unwrap_or(first)))
     }
 
     fn ways(&self, ways: &mut Vec<bool>) {
