@@ -218,7 +218,7 @@ def test_height_of_a_preset_of_one_body(name: str) -> None:
     assert truck.cg_height == 1.5
     table = f'[vehicle]\npreset = "{name}"\ncg_height = 1.5\n'
     assert sw.Case.parse(table + CROSSING).vehicle == truck
-    with pytest.raises(ValueError, match=r"'cg_heights' \(not beside this preset\)"):
+    with pytest.raises(ValueError, match=r"'cg_heights' \(did you mean 'cg_height'\?\)"):
         sw.Case.parse(f'[vehicle]\npreset = "{name}"\ncg_heights = [1.0, 1.0]' + CROSSING)
 
 
