@@ -121,7 +121,7 @@ def test_speed_and_road_go_before_those_of_the_case(
     ("arguments", "message"),
     [
         (["--speed", "-2"], "speed = -2: must be"),
-        (["--road", "b"], "--road = 'b': must be one of A, B, C"),
+        (["--road", "b"], "with road set, [road]: class = 'b': must be one of A, B, C"),
         (["--road", "B", "--seed", "-1"], "--seed = -1: must not be negative"),
         (["--seed", "1"], "has no random [road]; add one, or --road"),
     ],
@@ -160,18 +160,18 @@ def test_road(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "covers only" in err
     other = tmp_path / "mm.csv"
     other.write_text("a;z;x\n" + "".join(f"0;{1e3 * float(road.elevation(a))};{a}\n" for a in x))
-    at = ["road", str(other), "--delimiter", ";", "--end", "150", "--max-gap", "0.5"]
-    assert main([*at, "--columns", "x", "z", "--scale", "1", "1e-3"]) == 0
+    at = ["road", str(other), "--set", "delimiter=;", "--end", "150", "--set", "road.max_gap=0.5"]
+    assert main([*at, "--set", "columns=['x', 'z']", "--set", "scale=[1, 1e-3]"]) == 0
     found = capsys.readouterr()
     assert "class C" in found.out
     assert found.err == ""
-    assert main([*at, "--columns", "2", "1"]) == 0
+    assert main([*at, "--set", "columns=[2, 1]"]) == 0
     # What the text says is not told twice.
     out, err = capsys.readouterr()
     assert err == ""
     assert out.count("elevations: their median slope is") == 1
-    assert main(["road", str(case), "--scale", "1", "1e-3"]) == 2
-    assert "--scale: used with profiles only, not with a case" in capsys.readouterr().err
+    assert main(["road", str(case), "--set", "scale=[1, 1e-3]"]) == 2
+    assert "'scale' (not beside kind = 'iso-8608', but profile)" in capsys.readouterr().err
 
 
 def test_the_road_of_a_case_needs_no_more_than_a_road(
@@ -222,9 +222,8 @@ def test_a_profile_in_place_of_a_case(
         (["road", "a.csv", "--profile_start", "3"], "(did you mean '--profile-start'?)"),
         (["vehicles", "t44", "t45"], "unrecognized arguments: t45\n"),
         (
-            ["ensemble", "a.toml", "--samples", "3", "--speed", "20"],
-            "--speed 20 (an option of spanwise cross; of an ensemble the case sets it, "
-            "[crossing] speed)\n",
+            ["ensemble", "a.toml", "--samples", "3", "--plot", "20"],
+            "--plot 20 (an option of spanwise cross)\n",
         ),
         (["road", "a.toml", "--seed=2"], "--seed=2 (an option of spanwise cross and "),
         (["croos", "a.toml"], "(did you mean 'cross'?)\n"),
@@ -394,7 +393,14 @@ def test_no_such_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
         ([], "COMMAND"),
         (["crosss"], "invalid choice: 'crosss'"),
         (["cross"], "CASE.toml"),
-        (["cross", "case.toml", "--modes", "two"], "--modes: invalid int value: 'two'"),
+        (["cross", "case.toml", "--set", "modes"], "'modes': must be key=value, such as crossing."),
+        (["cross", "case.toml", "--set", "sections=[a]"], "'[a]': is not a value in TOML, where"),
+        (["cross", "case.toml", "--set", "mass=2"], "mass: in which table? (belongs in [bridge], "),
+        (["cross", "case.toml", "--set", "crosing.speed=2"], "(did you mean 'crossing'?); give"),
+        (
+            ["cross", "case.toml", "--set", "sped=2"],
+            "(did you mean 'speed'?); give that too, as in",
+        ),
         (["cross", "case.toml", "--mod", "2"], "unrecognized arguments: --mod"),
     ],
 )

@@ -39,6 +39,7 @@ modes = 3
 damping = 0.01
 approach = 20
 ramp = 5
+[ensemble]
 advance = 0.03
 """
 
@@ -234,18 +235,21 @@ def test_command_on_the_same_road(case: Path, capsys: pytest.CaptureFixture[str]
     case.write_text(other, encoding="utf-8")
     command = ["ensemble", str(case), "--samples", "3"]
     assert main(command) == 2
-    assert "or --same-road to take all as they stand" in capsys.readouterr().err
-    assert main([*command, "--same-road"]) == 0
+    assert "or own_roads=False to take all as they stand" in capsys.readouterr().err
     expected = sw.Case.read(case).ensemble(samples=3, own_roads=False)
-    assert f"hash      {expected.hash}" in capsys.readouterr().out
+    for option in ("--set=own_roads=False", "--set=own_roads=false", "--same-road"):
+        assert main([*command, option]) == 0
+        out, err = capsys.readouterr()
+        assert f"hash      {expected.hash}" in out
+        assert ("--same-road is now --set own_roads=..." in err) == (option == "--same-road")
 
 
 @pytest.mark.parametrize(
     ("more", "says"),
     [
         (["--samples", "-3"], "samples = -3: must be from 1 to 4294967295"),
-        (["--samples", "x"], "argument --samples: invalid int value: 'x'"),
-        (["--samples", "3", "--threads", "0"], "threads = 0: must be 1 or more"),
+        (["--samples", "x"], "samples = 'x': must be a whole number"),
+        (["--samples", "3", "--threads", "0"], "--threads = 0: must be from 1"),
         (["--samples", "3", "--out", "here.txt"], "--out here.txt: must end in .npz"),
         (["--samples", "3", "--out", "missing/here.npz"], "missing: no such folder"),
         ([], "--samples: missing; give it, or samples in [ensemble] of"),

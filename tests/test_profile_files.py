@@ -389,7 +389,7 @@ def test_files_as_people_have_them(tmp_path: Path, case: Table) -> None:
         ("x;z\n0;1\n1;1\n-- end;\n2;1\n", {}, ("line 4", "'-- end'", "not a number")),
         ("0,1\n1\n2,2\n", {}, ("line 2", "1 columns", "column 1")),
         ("0,1\n1,1\n1,1\n2,1\n", {}, ("line 3", "x[2] = 1 m", "duplicates = 'mean' takes")),
-        ("0,1\n\n2,1\n1,1\n3,1\n", {}, ("line 4", "x[2] = 1 m", "sort brings the points")),
+        ("0,1\n\n2,1\n1,1\n3,1\n", {}, ("line 4", "x[2] = 1 m", "sort = true brings the points")),
         ("x,z\n0,1\n1_000,1\n", {}, ("line 3", "'1_000' in column 0", "not a number")),
         ("0,1\n1,1_0\n", {"decimal": "."}, ("line 2", "'1_0' in column 1", "not a number")),
         ("0;1\n1;1_0,5\n", {"decimal": ","}, ("line 2", "'1_0,5' in column 1", "not a number")),
@@ -556,61 +556,39 @@ def test_the_same_options_on_the_command_line(
     file = tmp_path / "road.txt"
     lines = [f"{a:.3f}\t{b:.3f}".replace(".", ",") for a, b in zip(z, z[::-1], strict=True)]
     file.write_text("links [mm]\trechts [mm]\n" + "\n".join(lines), encoding="utf-16")
-    given = ["--spacing", "0.25", "--profile-start", "-20", "--delimiter", r"\t", "--decimal", ","]
-    assert main(["road", str(file), *given, "--columns", "links [mm]"]) == 0
-    out = capsys.readouterr().out
+    given = ["spacing=0.25", "start=-20", r"delimiter=\t", "decimal=,", "columns=links [mm]"]
+    options = [word for each in given for word in ("--set", each)]
+    assert main(["road", str(file), *options]) == 0
+    out, err = capsys.readouterr()
     assert "480 points from -20 to 99.75 m" in out
     assert "class B" in out
-    assert main(["road", str(file), *given]) == 2
-    assert "give one in --columns" in capsys.readouterr().err
+    assert err == ""
+    assert main(["road", str(file), *options[:-2]]) == 2
+    assert "give one in columns" in capsys.readouterr().err
+    # The options that there were, for one version more.
+    old = ["--spacing", "0.25", "--profile-start", "-20", "--delimiter", r"\t", "--decimal", ","]
+    assert main(["road", str(file), *old, "--columns", "links [mm]"]) == 0
+    told, err = capsys.readouterr()
+    assert told == out
+    assert "warning: --profile-start is now --set start=...; the old name goes with" in err
+    assert err.count("warning") == 5
 
 
-#: Files, options of the command, what it says, and what Python says.
-ADVICE = {
-    "sort": ("0,0.1\n2,0.1\n1,0.1\n3,0.1\n", [], "--sort brings the", "sort brings the"),
-    "duplicates": (
-        "0,0.1\n1,0.1\n1,0.1\n2.5,0.1\n",
-        [],
-        "--duplicates mean takes",
-        "duplicates = 'mean' takes",
-    ),
-    "max_gap": ("0,1\n1,1\n2,1\n9,1\n", [], "at most --max-gap = 5 m", "at most max_gap = 5 m"),
-    "start": (
-        "0,1\n1,1\n2,1\n3,1\n",
-        ["--profile-start", "nan"],
-        "error: --profile-start = NaN: must be",
-        "start = NaN: must be",
-    ),
-    "decimal": (
-        "0;1,234\n1;1,235\n",
-        [],
-        "give --decimal , or --decimal .\n",
-        "give decimal = ',' or decimal = '.'",
-    ),
-    "delimiter": (
-        "10,11\n12,13\n",
-        ["--spacing", "1"],
-        "give --decimal , or --delimiter ,\n",
-        "give decimal = ',' or delimiter = ','",
-    ),
-    "spacing": ("0.1\n0.2\n", [], "give their --spacing\n", "give their spacing"),
-    "spacing in place": (
-        "0,1\n1,1\n",
-        ["--columns", "1"],
-        "or give --spacing in place of x\n",
-        "or give spacing in place of x",
-    ),
-    "columns": (
-        "x,left,right\n0,1,2\n",
-        [],
-        "and one elevation in --columns, or",
-        "and one elevation in columns, or",
-    ),
-    "scale": ("x [rod],z [m]\n0,1\n", [], "give --scale\n", "give scale"),
+#: Files, arguments, and what is said, in Python and by the command alike.
+ADVICE: dict[str, tuple[str, dict[str, Any], str]] = {
+    "sort": ("0,0.1\n2,0.1\n1,0.1\n3,0.1\n", {}, "sort = true brings the"),
+    "duplicates": ("0,0.1\n1,0.1\n1,0.1\n2.5,0.1\n", {}, "duplicates = 'mean' takes"),
+    "max_gap": ("0,1\n1,1\n2,1\n9,1\n", {}, "at most max_gap = 5 m"),
+    "start": ("0,1\n1,1\n2,1\n3,1\n", {"start": float("nan")}, "start = NaN: must be"),
+    "decimal": ("0;1,234\n1;1,235\n", {}, "give decimal = ',' or decimal = '.'"),
+    "delimiter": ("10,11\n12,13\n", {"spacing": 1}, "give decimal = ',' or delimiter = ','"),
+    "spacing": ("0.1\n0.2\n", {}, "give their spacing"),
+    "spacing in place": ("0,1\n1,1\n", {"columns": 1}, "or give spacing in place of x"),
+    "columns": ("x,left,right\n0,1,2\n", {}, "and one elevation in columns, or"),
+    "scale": ("x [rod],z [m]\n0,1\n", {}, "give scale"),
     "scale of what is steep": (
         "".join(f"{k},{k * k % 7}\n" for k in range(40)),
-        [],
-        "as --scale 1 0.001 does",
+        {},
         "as scale = [1.0, 0.001] does in a file",
     ),
 }
@@ -618,23 +596,15 @@ ADVICE = {
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("case", ADVICE.values(), ids=ADVICE)
-def test_advice_names_what_the_place_has(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    case: tuple[str, list[str], str, str],
+def test_advice_names_what_there_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], case: tuple[str, dict[str, Any], str]
 ) -> None:
-    text, options, there, here = case
+    text, given, says = case
     file = tmp_path / "road.txt"
     file.write_text(text)
-    main(["road", str(file), *options])
+    main(["road", str(file), *(f"--set={key}={value}" for key, value in given.items())])
     out, err = capsys.readouterr()
-    assert there in err + " ".join(out.split())
-    # Python and case files have other names; the command leaves nothing behind.
-    names = {"--profile-start": "start", "--columns": "columns", "--spacing": "spacing"}
-    given = {
-        names[key]: int(value) if key == "--columns" else float(value)
-        for key, value in zip(options[::2], options[1::2], strict=True)
-    }
+    assert says in err + " ".join(out.split())
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         try:
@@ -642,8 +612,7 @@ def test_advice_names_what_the_place_has(
             said = str(told[0].message)
         except ValueError as refused:
             said = str(refused)
-    assert here in said
-    assert "--" not in said
+    assert says in said
 
 
 #: Files with points that were not measured, what is given for these, and what is left of x.
@@ -685,13 +654,13 @@ def test_what_was_not_measured_is_refused_or_doubted_with_the_remedy(
         with pytest.raises(ValueError, match=refused):
             sw.Profile.read(file)
         assert main(["road", str(file)]) == 2
-        assert capsys.readouterr().err.endswith("; --missing nan leaves such points out\n")
-        assert main(["road", str(file), "--missing", "nan"]) == 0
+        assert capsys.readouterr().err.endswith("; missing = nan leaves such points out\n")
+        assert main(["road", str(file), "--set", "missing=nan"]) == 0
         capsys.readouterr()
     file.write_text(rows([x for x, _ in points], [z for _, z in points]).replace("0.02\n", "-99\n"))
     with pytest.warns(sw.PlausibilityWarning, match=r"as 9 other points.*missing does so"):
         sw.Profile.read(file)
-    assert main(["road", str(file), "--missing", "-99"]) == 0
+    assert main(["road", str(file), "--set", "missing=-99"]) == 0
     assert capsys.readouterr().err == ""
-    assert main(["road", str(file), "--missing", "-1"]) == 0
-    assert "--missing does so" in " ".join(capsys.readouterr().out.split())
+    assert main(["road", str(file), "--set", "missing=-1"]) == 0
+    assert "missing does so" in " ".join(capsys.readouterr().out.split())

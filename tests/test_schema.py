@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import fields
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +12,11 @@ import numpy as np
 import pytest
 
 import spanwise as sw
+from spanwise._case_tables import assignment
+from spanwise._conditions import Crossing
 from spanwise._ensemble_files import as_dict
-from spanwise._toml import toml
+from spanwise._plan_of_arguments import Asked
+from spanwise._toml import toml, toml_value
 from spanwise.cli import main
 
 BRIDGE = sw.Bridge(spans=[20.0], EI=2e9, mass=5e3, stations_per_span=4)
@@ -251,3 +256,141 @@ def test_keys_beside_a_bridge_from_outside() -> None:
     tables["bridge"] = {"from_modes": {}}
     with pytest.raises(ValueError, match=r"\[bridge\]: from_modes: missing path, frequencies"):
         sw.Case.from_dict(tables)
+
+
+def test_an_advance_in_the_crossing_is_of_the_ensemble() -> None:
+    with pytest.warns(DeprecationWarning, match=r"advance in \[crossing\] is now advance in \[ens"):
+        case = sw.Case.parse(TEXT + "[crossing]\nspeed = 20.0\nadvance = 0.2\n")
+    assert case.run(modes=2) == sw.Case.parse(TEXT + "[crossing]\nspeed = 20.0\n").run(modes=2)
+    assert case.sampling == {"advance": 0.2}
+    assert case.ensemble(samples=1, modes=2).settings["advance"] == 0.2
+    with pytest.raises(ValueError, match="unknown key 'advanced'") as caught:
+        sw.Case.parse(TEXT + "[crossing]\nadvanced = 0.2\n")
+    assert "advance'" not in str(caught.value)
+
+
+#: Texts as of a command, the command's table, and key and value.
+ASSIGNED = [
+    ("crossing.speed=25", "crossing", "crossing.speed", 25),
+    (" speed = 2.5e1 ", "crossing", "crossing.speed", 25.0),
+    ("speed=[20, 21.5]", "ensemble", "ensemble.speed", [20, 21.5]),
+    ("modes=3", "ensemble", "ensemble.modes", 3),
+    ("samples=3", "crossing", "ensemble.samples", 3),
+    ("EI=2e10", "crossing", "bridge.EI", 2e10),
+    ("preset=half-car", "ensemble", "vehicle.preset", "half-car"),
+    ("class=C", "crossing", "road.class", "C"),
+    ("columns=z [mm]", "road", "road.columns", "z [mm]"),
+    ("start=.5", "road", "road.start", 0.5),
+    ("lift_off=false", "crossing", "crossing.lift_off", False),
+    ("lift_off=True", "crossing", "crossing.lift_off", True),
+    ("damping[1]=0.02", "crossing", "crossing.damping[1]", 0.02),
+    ("traffic[1].lane=2", "crossing", "traffic[1].lane", 2),
+    ("road={ kind = 'smooth' }", "crossing", "road", {"kind": "smooth"}),
+    ("vehicle.preset=a=b", "crossing", "vehicle.preset", "a=b"),
+    ("factors.body_mass[0]=2", "road", "ensemble.factors.body_mass[0]", 2),
+    ("class=C\nG=3", "crossing", "road.class", "C\nG=3"),
+]
+
+
+@pytest.mark.parametrize(("text", "table", "key", "value"), ASSIGNED)
+def test_a_value_by_its_key(text: str, table: str, key: str, value: object) -> None:
+    found = assignment(text, table)
+    assert found == (key, value)
+    assert type(found[1]) is type(value)
+
+
+MIXED = (
+    TEXT.replace('[vehicle]\npreset = "kishan-1973"\n', "")
+    + """
+[[traffic]]
+vehicle = { preset = "half-car" }
+[[traffic]]
+vehicle = { preset = "kishan-1973" }
+direction = "left"
+[crossing]
+speed = 20.0
+"""
+)
+
+
+def test_settings_stand_in_place_of_those_of_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(MIXED, encoding="utf-8")
+    settings: dict[str, Any] = {
+        "crossing.speed": 25,
+        "crossing.damping": 0.02,
+        "traffic[1].speed": 12.5,
+        "traffic[0].vehicle.cg_height": 1.5,
+        "bridge.spans[0]": 22.0,
+        "road": {"kind": "iso-8608", "class": "A"},
+        "road.seed": 4,
+    }
+    case = sw.Case.read(path, settings)
+    assert case.crossing["speed"] == 25.0
+    assert [each.speed for each in case.passages] == [None, 12.5]
+    assert case.bridge.length == 22.0
+    assert case.road == sw.ISO8608("A", seed=4)
+    run = case.run(modes=2)
+    words = (
+        word for key, each in settings.items() for word in ("--set", f"{key}={toml_value(each)}")
+    )
+    assert main(["cross", str(path), *words, "--modes", "2", "--json", "-"]) == 0
+    written = json.loads(capsys.readouterr().out)["settings"]
+    assert sw.Case.from_dict(written).run() == run
+    assert written["crossing"]["speed"] == 25.0
+    assert written["road"]["seed"] == 4
+    # The file, and what was given, stay as they are.
+    assert settings["road"] == {"kind": "iso-8608", "class": "A"}
+    assert sw.Case.read(path).crossing == {"speed": 20.0}
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"crossing.sped": 3}, r"toml with crossing\.sped set, \[crossing\]: .*mean 'speed'"),
+        ({"crosing.speed": 3}, r"unknown table or key 'crosing' \(did you mean 'crossing'\?\)"),
+        ({"traffic[2].speed": 3}, r"toml: traffic\[2\]\.speed: traffic has 2, counted from 0"),
+        ({"traffic.speed": 3}, r"traffic is a list; name one of it, as traffic\[0\]\.speed"),
+        ({"crossing.speed.x": 3}, r"crossing\.speed = 20\.0 is no table; give all of crossing\."),
+        ({"vehicle.axles[0].mass": 3}, r"vehicle\.axles is not in the case"),
+        ({"crossing.speed[0]": 3}, r"crossing\.speed is no list"),
+        (
+            {"crossing..speed": 3},
+            "'crossing..speed': must be table and key, such as crossing.speed",
+        ),
+        ({3: 3}, "3: must be table and key"),
+        (3, "settings = 3: must be a mapping"),
+        ({"crossing.speed": "25m/s"}, r"\[crossing\]: speed = '25m/s': must be a number"),
+    ],
+)
+def test_settings_that_are_none(tmp_path: Path, settings: Any, message: str) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(MIXED, encoding="utf-8")
+    with pytest.raises(sw.CaseError, match=message):
+        sw.Case.read(path, settings)
+
+
+def test_a_speed_that_the_ensemble_has_is_not_set_in_vain(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT + ENSEMBLE, encoding="utf-8")
+    assert main(["ensemble", str(path), "--set", "crossing.modes=3"]) == 2
+    assert "crossing.modes: [ensemble] has modes too, which goes before" in capsys.readouterr().err
+    assert main(["ensemble", str(path), "--set", "modes=3", "--set", "factors.body_mass[1]=2"]) == 0
+    many = expected(modes=3, factors={"body_mass": [0.9, 2, 1.1]})
+    assert f"hash      {many.hash}" in capsys.readouterr().out
+
+
+def test_signatures_have_what_settings_have() -> None:
+    for function, settings, others in (
+        (sw.cross, Crossing, {"bridge", "vehicle", "road"}),
+        (sw.ensemble, Asked, {"bridge", "vehicle", "threads", "progress"}),
+    ):
+        arguments = signature(function).parameters
+        own = {each.name: each.default for each in fields(settings)}
+        assert arguments.keys() == own.keys() | others
+        for name, default in own.items():
+            assert arguments[name].default in (default, Parameter.empty)

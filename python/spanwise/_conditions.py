@@ -74,10 +74,9 @@ class Settings:
 
 @dataclass(frozen=True, kw_only=True)
 class Crossing(Settings):
-    """What `cross` is asked for, and `advance`, which ensembles take from ``[crossing]`` too."""
+    """What `cross` is asked for."""
 
     speed: float | None = None
-    advance: float | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

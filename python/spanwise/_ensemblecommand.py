@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from spanwise._checks import whole_from
 from spanwise._ensemble_files import as_dict, npz_writer
 from spanwise._files import Content, check_targets, write_files
+from spanwise._key_options import add_key, add_road, add_set
 from spanwise._plain import json_lines
-from spanwise.case import Case, CaseError
+from spanwise.case import Case
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
+
+#: Most threads that can be asked for.
+MOST: Final = 2**31 - 1
 
 
 def add_to(commands: _SubParsersAction[Any]) -> None:
@@ -32,31 +35,28 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
     command.add_argument(
         "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
     )
-    command.add_argument(
-        "--samples", type=int, metavar="N", help="number of crossings, not that of [ensemble]"
-    )
-    command.add_argument(
+    add_set(command, "ensemble")
+    add_key(command, "--samples", "ensemble.samples", "number of crossings", metavar="N")
+    add_key(
+        command,
         "--seed",
-        type=int,
+        "ensemble.seed",
+        "seed of the random roads, in place of that of [road]; by default as [ensemble] says, or 0",
         metavar="N",
-        help="seed of the random roads, in place of that of [road]; by default as [ensemble] says, "
-        "or 0",
     )
-    command.add_argument(
-        "--first", type=int, metavar="N", help="number of the first sample; by default likewise"
+    add_key(
+        command,
+        "--first",
+        "ensemble.first",
+        "number of the first sample; by default likewise",
+        metavar="N",
     )
-    command.add_argument(
-        "--same-road",
-        action="store_const",
-        const=False,
-        dest="own_roads",
-        help="drive on the roads of the case as they stand, not on one drawn for each sample",
-    )
+    add_key(command, "--speed", "ensemble.speed", "speed at the start in m/s", metavar="V")
+    add_key(command, "--modes", "ensemble.modes", "number of modes", metavar="N")
+    add_road(command)
+    add_key(command, "--same-road", "ensemble.own_roads", nargs=0, const=False)
     command.add_argument(
         "--threads", type=int, metavar="N", help="threads; as many as the processor has by default"
-    )
-    command.add_argument(
-        "--modes", type=int, metavar="N", help="number of modes, not that of the case"
     )
     command.add_argument(
         "--out",
@@ -72,36 +72,21 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
     command.set_defaults(work=run)
 
 
-@contextmanager
-def _errors(options: Iterable[str]) -> Iterator[None]:
-    """Blames the option that is at fault, or the environment, and not the case."""
-    try:
-        yield
-    except CaseError as error:
-        said = str(error.__cause__)
-        key = said.split(" ")[0]
-        if key in options:
-            raise ValueError(f"--{said}") from error
-        if key == "SPANWISE_ISA":
-            raise ValueError(said) from error
-        if "own_roads=False" in said:
-            raise CaseError(str(error).replace("own_roads=False", "--same-road")) from error
-        raise
-
-
 def run(options: argparse.Namespace) -> str:
     """Computes the ensemble, writes the files asked for, and gives the text to print."""
     if options.out is not None and options.out.suffix != ".npz":
         raise ValueError(f"--out {options.out}: must end in .npz")
-    case = Case.read(options.case)
+    case = Case.read(options.case, options.settings)
     named = [Path(each) for each in (options.json, options.out) if each not in (None, "-")]
     check_targets(named, case.files)
-    names = ("samples", "seed", "first", "own_roads", "modes", "threads")
-    given = {key: each for key in names if (each := getattr(options, key)) is not None}
-    if "samples" not in given and "samples" not in case.sampling:
+    if "samples" not in case.sampling:
         raise ValueError(f"--samples: missing; give it, or samples in [ensemble] of {options.case}")
-    with _errors(given):
-        found = case.ensemble(**given, progress=True)
+    for key in options.settings:
+        table, _, name = key.partition(".")
+        if table == "crossing" and name in case.sampling:
+            raise ValueError(f"{key}: [ensemble] has {name} too, which goes before; set that")
+    threads = None if options.threads is None else whole_from("--threads", options.threads, 1, MOST)
+    found = case.ensemble(threads=threads, progress=True)
     text = found.summary() + "\n"
     files: list[tuple[Path, Content]] = []
     if options.json is not None:

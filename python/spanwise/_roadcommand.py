@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -13,30 +13,30 @@ import numpy as np
 
 from spanwise._core import __version__
 from spanwise._files import write_files
+from spanwise._key_options import add_key, add_set
 from spanwise._plain import json_lines
 from spanwise._shown import warned
 from spanwise._streams import tell
 from spanwise.case import Case
-from spanwise.roads import IriSegments, IsoClass, Profile, Road
-from spanwise.roads._options import written_as
+from spanwise.roads import IriSegments, IsoClass, Road
 
 if TYPE_CHECKING:
     from argparse import _SubParsersAction
 
 Found = TypeVar("Found")
 
-#: Options by the arguments of `Profile.read` that they give.
-READING: Final = {
-    "columns": "--columns",
-    "spacing": "--spacing",
-    "start": "--profile-start",
-    "delimiter": "--delimiter",
-    "decimal": "--decimal",
-    "scale": "--scale",
-    "missing": "--missing",
-    "sort": "--sort",
-    "duplicates": "--duplicates",
-    "max_gap": "--max-gap",
+#: Options that were there for keys of a profile, and how many values they take.
+OLD: Final[dict[str, dict[str, Any]]] = {
+    "columns": {"nargs": "+"},
+    "spacing": {},
+    "profile-start": {"key": "road.start"},
+    "delimiter": {},
+    "decimal": {},
+    "scale": {"nargs": 2},
+    "missing": {},
+    "sort": {"nargs": 0, "const": True},
+    "duplicates": {},
+    "max-gap": {"key": "road.max_gap"},
 }
 
 
@@ -66,61 +66,16 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         metavar="FILE",
         help="write the results as JSON; - for standard output, in place of the text",
     )
-    profile = command.add_argument_group("how to read a profile")
-    profile.add_argument(
-        "--columns",
-        nargs="+",
-        metavar="COLUMN",
-        help="names, or numbers from 0, of the columns with x and elevation, or with elevation "
-        "alone; of several elevations the mean is taken",
-    )
-    profile.add_argument(
-        "--spacing", type=float, metavar="D", help="distance of the points [m], if no column has x"
-    )
-    profile.add_argument(
-        "--profile-start", type=float, metavar="X", help="x of the first point, not that there [m]"
-    )
-    profile.add_argument(
-        "--delimiter",
-        metavar="C",
-        help=r"what separates the columns, \t for a tab; found without",
-    )
-    profile.add_argument(
-        "--decimal", metavar="C", help="the decimal mark, . or a comma; found without"
-    )
-    profile.add_argument(
-        "--scale",
-        nargs=2,
-        type=float,
-        metavar=("X", "Z"),
-        help="what x and elevation are multiplied by to give metres: 1 0.001 for mm; without, by "
-        "the units that the file names",
-    )
-    profile.add_argument(
-        "--missing",
-        type=float,
-        metavar="Z",
-        help="leave out points with this elevation, as the file writes it: -9999, or nan for "
-        "blank cells",
-    )
-    profile.add_argument(
-        "--sort", action="store_const", const=True, help="bring the points into the order of x"
-    )
-    profile.add_argument(
-        "--duplicates",
-        metavar="WHICH",
-        help="of points with the same x take the mean, first or last; refused without",
-    )
-    profile.add_argument(
-        "--max-gap", type=float, metavar="D", help="largest distance of neighbouring points [m]"
-    )
+    add_set(command, "road")
+    for name, more in OLD.items():
+        add_key(command, f"--{name}", **{"key": f"road.{name}", **more})
     command.set_defaults(work=run)
 
 
 def run(options: argparse.Namespace) -> str:
     """Writes the file asked for, and gives the text to print."""
     with _doubts_kept(told=options.json == "-") as told:
-        road, files = _read(options)
+        road, files = Case.read_road(options.file, options.settings)
         start, end = _section(road, options.start, options.end)
         index = _or_reason(lambda: road.iri(start, end))
         found = _or_reason(lambda: road.iso_class(start, end))
@@ -133,23 +88,6 @@ def run(options: argparse.Namespace) -> str:
             return table
         write_files([(Path(options.json), [table.encode()])], inputs=files)
     return _text(road, (start, end), index, segments, found, told)
-
-
-def _read(options: argparse.Namespace) -> tuple[Road, Sequence[Path]]:
-    """The road, and the files that it was read from."""
-    given = {}
-    for key, option in READING.items():
-        value = getattr(options, option.removeprefix("--").replace("-", "_"))
-        if value is not None:
-            given[key] = value
-    if options.file.suffix.lower() == ".toml":
-        for key in given:
-            raise ValueError(f"{READING[key]}: used with profiles only, not with a case")
-        return Case.read_road(options.file)
-    if "columns" in given:
-        given["columns"] = [int(c) if c.isdecimal() else c for c in given["columns"]]
-    with written_as(READING):
-        return Profile.read(options.file, **given), [options.file]
 
 
 @contextmanager

@@ -10,12 +10,20 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from spanwise._build import Maker, Place, Table, check_known, within
+from spanwise._build import Place, Table, within
+from spanwise._case_tables import (
+    CROSSING,
+    SAMPLING,
+    TABLES,
+    assigned,
+    check_complete,
+    check_tables,
+    home,
+)
 from spanwise._casefile import CaseError, parse_toml, read_text
 from spanwise._checks import file_path, items, mapping, shown
 from spanwise._checks import text as checks_text
-from spanwise._conditions import Crossing
-from spanwise._plan_of_arguments import Asked
+from spanwise._renamed import renamed
 from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
@@ -25,12 +33,9 @@ from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
 from spanwise.schema import (
     PASSAGE,
-    Places,
     Reading,
-    belongs,
     bridge_of,
     events_of,
-    places,
     vehicle_of,
 )
 from spanwise.study import ensemble
@@ -44,26 +49,14 @@ T = TypeVar("T")
 #: A vehicle among several, and what of it, in a message about a crossing.
 VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
-#: Tables, as they are written.
-TABLES: Final = {
-    **{name: f"[{name}]" for name in ("bridge", "vehicle", "road", "crossing", "ensemble")},
-    **{name: f"[[{name}]]" for name in ("traffic", "events")},
-}
-
-
-#: The road has a table of its own.
-CROSSING: Final = Maker(Crossing)
-SAMPLING: Final = Maker(Asked, without=("road",))
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Case(Hashed):
     """A bridge, what crosses it and how, as a case file describes it.
 
     The keys of ``[bridge]`` are the arguments of `Bridge`; those of ``[crossing]`` the keyword
-    arguments of `cross`, and ``advance``, which `ensemble` alone uses; a ``drive`` with numbers as
-    ``{ kind = "braking", deceleration = 4.0 }``. ``[ensemble]``, beside ``[crossing]`` or in its
-    place, has keyword arguments of `ensemble`.
+    arguments of `cross`, a ``drive`` with numbers as ``{ kind = "braking", deceleration = 4.0 }``.
+    ``[ensemble]``, beside ``[crossing]`` or in its place, has keyword arguments of `ensemble`.
 
     The keys of ``[vehicle]`` are the arguments of `Vehicle`, with one table ``[[vehicle.axles]]``
     for each `Axle`, front first; or for a vehicle of several bodies one table
@@ -144,19 +137,35 @@ class Case(Hashed):
             "passages": passages,
             "events": tuple(_passages(f"events[{k}]", each) for k, each in enumerate(events)),
         }
+        given = {
+            name: mapping(name, getattr(self, name), "a mapping of arguments by name")
+            for name in ("crossing", "sampling")
+        }
+        if "advance" in given["crossing"]:
+            renamed("advance in [crossing]", "advance in [ensemble]")
+            crossing = {**given["crossing"]}
+            given["sampling"] = {"advance": crossing.pop("advance"), **given["sampling"]}
+            given["crossing"] = crossing
         for name, table, maker in (
             ("crossing", "crossing", CROSSING),
             ("sampling", "ensemble", SAMPLING),
         ):
-            given = mapping(name, getattr(self, name), "a mapping of arguments by name")
             with within(f"{self.source}, [{table}]", CaseError):
-                made[name] = maker.arguments(given, Reading(home=_home).place(table))
+                made[name] = maker.arguments(given[name], Reading(home=home).place(table))
                 maker.make(**made[name])
         vars(self).update(made)
 
     @classmethod
-    def read(cls, path: str | Path) -> Case:
+    def read(cls, path: str | Path, settings: Mapping[str, Any] | None = None) -> Case:
         """Read a case file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        settings : mapping, optional
+            Values that stand in place of the file's, or beside them, by table and key, such as
+            ``{"crossing.speed": 25.0, "vehicle.bodies[0].mass": 9e3}``.
 
         Raises
         ------
@@ -167,7 +176,8 @@ class Case(Hashed):
         """
         path = file_path("path", path)
         try:
-            case = cls.parse(read_text(path), source=str(path), folder=path.parent)
+            source, tables = _read(path, settings)
+            case = cls._of(tables, source, path.parent)
         except CaseError as error:
             if looks_like_profile(path):
                 raise CaseError(
@@ -178,8 +188,12 @@ class Case(Hashed):
         return replace(case, files=(path, *case.files))
 
     @classmethod
-    def read_road(cls, path: str | Path) -> tuple[Road, tuple[Path, ...]]:
+    def read_road(
+        cls, path: str | Path, settings: Mapping[str, Any] | None = None
+    ) -> tuple[Road, tuple[Path, ...]]:
         """The road of a case file, of which nothing else is needed, and the files it is read from.
+
+        A file that is not called .toml is a measured profile.
 
         Raises
         ------
@@ -187,13 +201,22 @@ class Case(Hashed):
             As from `read`.
         """
         path = file_path("path", path)
-        reading = Reading(path.parent, _home)
-        tables = parse_toml(read_text(path), str(path))
-        with within(str(path), CaseError):
-            _check_tables(tables)
-        with within(f"{path}, [road]", CaseError):
+        reading = Reading(path.parent, home)
+        if path.suffix.lower() == ".toml":
+            source, tables = _read(path, settings)
+            with within(source, CaseError):
+                check_tables(tables)
+            source, files = f"{source}, [road]", [path]
+        else:
+            profile = {"road": {"kind": "profile", "file": path.name}}
+            source, tables, files = (
+                "",
+                assigned(profile, mapping("settings", {} if settings is None else settings)),
+                [],
+            )
+        with within(source, CaseError):
             road = reading.road(tables.get("road", Smooth()), reading.place("road"))
-        return road, (path, *reading.files)
+        return road, (*files, *reading.files)
 
     @classmethod
     def parse(cls, text: str, source: str = "case", folder: str | Path = ".") -> Case:
@@ -240,15 +263,15 @@ class Case(Hashed):
 
     @classmethod
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
-        reading = Reading(folder, _home)
+        reading = Reading(folder, home)
 
         def read(name: str, make: Callable[[Any, Place], T], *table: Any, where: str = "") -> T:
             with within(f"{source}, {where or TABLES[name]}", CaseError):
                 return make(table[0] if table else tables[name], reading.place(name))
 
         with within(source, CaseError):
-            _check_tables(tables)
-            _check_complete(tables)
+            check_tables(tables)
+            check_complete(tables)
         sampling = {**tables.get("ensemble", {})}
         if "road" in sampling and "road" not in tables:  # where the settings of an ensemble have it
             tables = {**tables, "road": sampling.pop("road")}
@@ -285,8 +308,7 @@ class Case(Hashed):
         if self.events or (self.sampling and not self.crossing and not overrides):
             needed = "a single crossing takes one event, and a [crossing]"
             raise CaseError(f"{self.source}: is a case of an ensemble; {needed}")
-        own = {key: each for key, each in self.crossing.items() if key != "advance"}
-        given = {"road": self.road, **own, **overrides}
+        given = {"road": self.road, **self.crossing, **overrides}
         with self._errors(overridden=bool(overrides)):
             return cross(self.bridge, self.passages, **given)
 
@@ -319,6 +341,8 @@ class Case(Hashed):
         try:
             yield
         except ValueError as error:
+            if str(error).startswith("SPANWISE_ISA"):  # which is of no case
+                raise
             said, named = VEHICLE.subn(lambda found: _number(int(found[1])), str(error))
             raise CaseError(f"{self.source if named else place}: {said}") from error
 
@@ -336,34 +360,13 @@ def _passages(key: str, given: object) -> tuple[Passage, ...]:
     return tuple(passages)
 
 
-def _check_complete(tables: Table) -> None:
-    who = [name for name in ("vehicle", "traffic", "events") if name in tables]
-    if len(who) > 1:
-        raise ValueError(f"{TABLES[who[0]]} and {TABLES[who[1]]}: give one of the two")
-    how = "ensemble" if "ensemble" in tables else "crossing"
-    missing = [name for name in ("bridge", *(who or ["vehicle"]), how) if name not in tables]
-    if missing:
-        needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing] or [ensemble]"
-        raise ValueError(f"missing {', '.join(TABLES[name] for name in missing)}; {needs}")
-
-
-def _check_tables(tables: Table) -> None:
-    check_known(tables, [*TABLES], Place(home=_home), "table or key")
-    for name, table in tables.items():
-        several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
-        if name == "traffic" and not several:
-            raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
-        many = name in ("traffic", "events") or (name == "road" and several)
-        if not many and not isinstance(table, Mapping):
-            raise ValueError(f"{name} = {shown(table)}: must be a table, {TABLES[name]}")
-
-
-def _home(key: str) -> str:
-    """Where a key belongs that was found in a table without such a key, or nothing."""
-    if key in TABLES and key != "vehicle":
-        return f" (a table of its own, {TABLES[key]})"
-    own: Places = {
-        "crossing": {"[crossing]": CROSSING.keys},
-        "ensemble": {"[ensemble]": SAMPLING.keys.keys() - CROSSING.keys.keys()},
-    }
-    return belongs(key, {**places(), **own})
+def _read(path: Path, settings: Mapping[str, Any] | None) -> tuple[str, dict[str, Any]]:
+    """The tables of a file with settings in place of its own, and what messages call them."""
+    source = str(path)
+    tables = parse_toml(read_text(path), source)
+    if settings is None or settings == {}:
+        return source, tables
+    with within(source, CaseError):
+        tables = assigned(tables, mapping("settings", settings))
+    which = f"{len(settings)} values" if len(settings) > 3 else ", ".join(settings)
+    return f"{source} with {which} set", tables

@@ -7,27 +7,22 @@ import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final, NoReturn
+from typing import Any, NoReturn
 
 from spanwise import _ensemblecommand, _roadcommand
-from spanwise._checks import choice, count
+from spanwise._checks import count
 from spanwise._core import __version__
 from spanwise._figures import figure_files
 from spanwise._files import Content, write_files
+from spanwise._key_options import add_key, add_road, add_set
 from spanwise._keys import suggestion
 from spanwise._run_files import csv_files, json_text
 from spanwise._signals import Terminated, terminable
 from spanwise._streams import say, tell
 from spanwise.case import Case
 from spanwise.catalogue import detail, listing
-from spanwise.roads import CLASSES, ISO8608, Smooth
+from spanwise.roads import Road
 from spanwise.roads.random import is_random, reseeded
-
-#: Where a case says for an ensemble what options of a single crossing say in its place.
-IN_CASE: Final = {
-    "--speed": "; of an ensemble the case sets it, [crossing] speed",
-    "--road": "; of an ensemble the case sets it, [road]",
-}
 
 BAD_INPUT, FAILURE, INTERRUPTED, SIGNALLED = 2, 1, 130, 128
 
@@ -47,9 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _main(arguments: Sequence[str] | None) -> int:
     try:
-        options = _parser().parse_args(arguments)
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", UserWarning)
+            warnings.filterwarnings("always", ".* is now .*", DeprecationWarning)
+            options = _parser().parse_args(arguments)
             text = options.work(options)
         # What the text says is not said twice on a screen.
         said = "" if getattr(options, "json", None) == "-" else " ".join(text.split())
@@ -94,8 +90,7 @@ class _Parser(argparse.ArgumentParser):
             if option.startswith("-") and option in each._option_string_actions
         ]
         if others:
-            place = IN_CASE.get(option, "") if self.prog.endswith("ensemble") else ""
-            return f" (an option of {' and '.join(others)}{place})"
+            return f" (an option of {' and '.join(others)})"
         known = [each for each in self._option_string_actions if each.startswith("--")]
         return suggestion(option, known)
 
@@ -129,22 +124,18 @@ def _parser() -> _Parser:
     cross.add_argument(
         "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
     )
-    cross.add_argument(
-        "--modes", type=int, metavar="N", help="number of modes, not that of the case"
-    )
-    cross.add_argument(
+    add_set(cross, "crossing")
+    add_key(
+        cross,
         "--speed",
-        type=float,
+        "crossing.speed",
+        "speed at the start in m/s; of all vehicles without their own",
         metavar="V",
-        help="speed at the start in m/s, not that of the case; of all vehicles without their own",
     )
+    add_key(cross, "--modes", "crossing.modes", "number of modes", metavar="N")
+    add_road(cross)
     cross.add_argument(
-        "--road",
-        metavar="CLASS",
-        help="a random road of this class of ISO 8608, A to H, not that of the case",
-    )
-    cross.add_argument(
-        "--seed", type=int, metavar="N", help="seed of the random road, not that of the case"
+        "--seed", type=int, metavar="N", help="seed of the random road, in all its random parts"
     )
     cross.add_argument(
         "--json",
@@ -183,8 +174,8 @@ def _vehicles(options: argparse.Namespace) -> str:
 
 def _cross(options: argparse.Namespace) -> str:
     """Computes the crossing, writes the files asked for, and gives the text to print."""
-    case = Case.read(options.case)
-    run = case.run(**_overrides(options, case))
+    case = Case.read(options.case, options.settings)
+    run = case.run(**_reseeded(options, case))
     files: list[tuple[Path, Content]] = []
     folders = []
     text = run.summary() + "\n"
@@ -202,24 +193,15 @@ def _cross(options: argparse.Namespace) -> str:
     return text
 
 
-def _overrides(options: argparse.Namespace, case: Case) -> dict[str, object]:
-    """What the command says in place of the case."""
-    given: dict[str, object] = {
-        key: getattr(options, key)
-        for key in ("modes", "speed")
-        if getattr(options, key) is not None
-    }
-    if options.road is not None:
-        letter = choice("--road", options.road, CLASSES)
-        given["road"] = ISO8608(letter, seed=count("--seed", options.seed or 0))
-    elif options.seed is not None:
-        road = Smooth() if case.road is None else case.road
-        given["road"] = reseeded(road, options.seed)
-        if not is_random(road):
-            raise ValueError(
-                f"--seed {options.seed}: {options.case} has no random [road]; add one, or --road"
-            )
-    return given
+def _reseeded(options: argparse.Namespace, case: Case) -> dict[str, Road]:
+    """The road of the case with the seed of the command in all its random parts."""
+    if options.seed is None:
+        return {}
+    if case.road is None or not is_random(case.road):
+        raise ValueError(
+            f"--seed {options.seed}: {options.case} has no random [road]; add one, or --road"
+        )
+    return {"road": reseeded(case.road, count("--seed", options.seed))}
 
 
 def _complain(message: str, code: int) -> int:

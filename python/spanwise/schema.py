@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -40,7 +40,7 @@ VEHICLES: Final[tuple[Maker[AnyVehicle], ...]] = (
 OPTIONS: Final = {key for preset in PRESETS.values() for key in preset.options} - {*CHANGED}
 
 #: Places in each table of a case, and the keys that belong there.
-Places: TypeAlias = Mapping[str, Mapping[str, Container[str]]]
+Places: TypeAlias = Mapping[str, Mapping[str, Collection[str]]]
 
 
 @cache
@@ -62,14 +62,16 @@ def places() -> Places:
     }
 
 
+def belong(key: str, tables: Places) -> list[str]:
+    """Where a key belongs, one place in a table; what is likelier meant has the shorter name."""
+    found = (next((at for at, keys in each.items() if key in keys), "") for each in tables.values())
+    return sorted(filter(None, found), key=len)
+
+
 def belongs(key: str, tables: Places | None = None) -> str:
     """Where a key belongs that was found in a table without such a key, or nothing."""
-    found = [
-        next((place for place, keys in each.items() if key in keys), "")
-        for each in (tables or places()).values()
-    ]
-    # What is likelier to be meant has the shorter name.
-    return f" (belongs in {', '.join(sorted(filter(None, found), key=len))})" if any(found) else ""
+    found = belong(key, tables or places())
+    return f" (belongs in {', '.join(found)})" if found else ""
 
 
 @dataclass(frozen=True)

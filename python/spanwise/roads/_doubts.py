@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._shown import many
-from spanwise.roads._options import called, given
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -74,20 +73,20 @@ def doubts(x: Array, elevations: Array) -> Iterator[str]:
         yield (
             f"elevations[{point}] = {elevations[point]:g}: is {off:.3g} m off the points beside "
             f"it{also}; is it a drop-out, or stands for a missing value? Leave such points out; of "
-            f"a file {called('missing')} does so, given their value as it is written there"
+            f"a file missing does so, given their value as it is written there"
         )
         return
     slope = _slope(x, elevations)
     if slope > _VERY_STEEP:
         yield (
             f"elevations: their median slope is {slope:.3g}; are they in mm? Multiply them by "
-            f"0.001, as {given('scale', [1.0, 0.001])} does in a file"
+            f"0.001, as scale = [1.0, 0.001] does in a file"
         )
     elif slope > _STEEP:
         yield (
             f"elevations: their median slope is {slope:.3g}, as of class F of ISO 8608 or worse; "
             "are they in inches, cm or mm? Multiply them by 0.0254, 0.01 or 0.001, as "
-            f"{given('scale', [1.0, 0.0254])} does in a file"
+            "scale = [1.0, 0.0254] does in a file"
         )
 
 

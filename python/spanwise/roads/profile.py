@@ -17,9 +17,8 @@ from spanwise._checks import as_array, choice, file_path, finite, flag, number, 
 from spanwise._keys import suggesting
 from spanwise._renamed import renamed
 from spanwise.roads._doubts import doubts
-from spanwise.roads._options import called, given
 from spanwise.roads.base import CONTACT_PATCH, Road
-from spanwise.roads.reading import NAN, read_points
+from spanwise.roads.reading import read_points
 from spanwise.roads.roughness import HELD
 from spanwise.roads.sheet import Column
 
@@ -205,9 +204,9 @@ class Profile(Road):
         ----------
         University of Michigan Transportation Research Institute, "The ERD file specification".
         """
-        kept = choice(called("duplicates"), duplicates, _DUPLICATES)
-        offset = None if start is None else finite(called("start"), start)
-        is_sorted = flag(called("sort"), sort)
+        kept = choice("duplicates", duplicates, _DUPLICATES)
+        offset = None if start is None else finite("start", start)
+        is_sorted = flag("sort", sort)
         path = file_path("path", path)
         x, elevations, lines = read_points(
             path, columns, spacing, delimiter, decimal, scale, missing
@@ -276,7 +275,6 @@ def _merged(x: Array, elevations: Array, lines: Array, kept: str) -> tuple[Array
 
 def _in_file(message: str, path: Path, x: Array, elevations: Array, lines: Array) -> str:
     """What is wrong with a profile, with the line of the file and what may mend it."""
-    message = message.replace("max_gap", called("max_gap"))
     found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
     if found is None:
         return message
@@ -285,10 +283,10 @@ def _in_file(message: str, path: Path, x: Array, elevations: Array, lines: Array
     point = int(found[2])
     where = f"{path}, line {lines[point]:.0f}: {message}"
     if found[1] == "elevations" and np.isnan(elevations[point]):
-        return f"{where}; {given('missing', NAN)} leaves such points out"
+        return f"{where}; missing = nan leaves such points out"
     if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
         takes = "takes the mean there, 'first' or 'last' one elevation"
-        return f"{where}; {given('duplicates', 'mean')} {takes}"
+        return f"{where}; duplicates = 'mean' {takes}"
     if found[1] == "x" and point > 0 and x[point] < x[point - 1]:
-        return f"{where}; {called('sort')} brings the points into the order of x"
+        return f"{where}; sort = true brings the points into the order of x"
     return where

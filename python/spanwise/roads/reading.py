@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from spanwise._checks import items, number, numbers, positive, shown, text
 from spanwise._keys import suggestion
 from spanwise.roads import erd
-from spanwise.roads._options import called, given
 from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of, without_unit
 from spanwise.roads.sniffing import encoding_of, is_number, value_of
 
@@ -53,14 +52,14 @@ def read_points(
     ValueError
         If it holds no such points, naming the line, or a value is not allowed.
     """
-    step = None if spacing is None else positive(called("spacing"), spacing)
+    step = None if spacing is None else positive("spacing", spacing)
     wanted = _columns(columns)
     factors = None if scale is None else _factors(scale)
     mark = None if delimiter is None else _delimiter(delimiter)
-    gone = None if missing is None else number(called("missing"), missing)
-    point = None if decimal is None else text(called("decimal"), decimal)
+    gone = None if missing is None else number("missing", missing)
+    point = None if decimal is None else text("decimal", decimal)
     if point not in (None, ".", ","):
-        raise ValueError(f"{called('decimal')} = {shown(decimal)}: must be . or ,")
+        raise ValueError(f"decimal = {shown(decimal)}: must be . or ,")
     content = _content(path)
     try:
         encoding = encoding_of(content)
@@ -71,7 +70,7 @@ def read_points(
         if next(lines(), "").startswith(erd.MARK):
             for key, value in (("spacing", spacing), ("delimiter", mark), ("decimal", point)):
                 if value is not None:
-                    raise ValueError(f"{called(key)} = {shown(value)}: not used with ERD files")
+                    raise ValueError(f"{key} = {shown(value)}: not used with ERD files")
             sheet = erd_of(lines)
         else:
             _check_columns(wanted, has_x=step is None)
@@ -171,23 +170,23 @@ def _places(sheet: Sheet, first: Row, wanted: tuple[Column, ...] | None) -> list
         held = sum(cell != "" for cell in cells)
         if sheet.along is None:
             if held == 1:
-                allowed = f"if it has elevations, give their {called('spacing')}"
+                allowed = "if it has elevations, give their spacing"
                 raise ValueError(f"{where}: 1 column; {allowed}")
             if len(sheet.names) > 2 and held > 2:
                 named = f"{held} columns: {', '.join(sheet.names)}"
-                allowed = f"give that of x and one elevation in {called('columns')}"
+                allowed = "give that of x and one elevation in columns"
                 raise ValueError(f"{where}: {named}; {allowed}, or several for their mean")
             wanted = (0, 1)
         elif held == 1:
             wanted = (0,)
         else:
             named = f": {', '.join(sheet.names)}" if sheet.names else ""
-            allowed = f"give one in {called('columns')}, or several for their mean"
+            allowed = "give one in columns, or several for their mean"
             raise ValueError(f"{where}: {held} columns of elevations{named}; {allowed}")
     _check_columns(wanted, has_x=sheet.along is None)
     found = []
     for k, column in enumerate(wanted):
-        key = f"{called('columns')}[{k}] = {shown(column)}"
+        key = f"columns[{k}] = {shown(column)}"
         if isinstance(column, int):
             found.append(column)
         elif (place := _place_of(column, sheet.names)) is not None:
@@ -220,7 +219,7 @@ def _number(row: Row, column: int, decimal: str, is_height: bool, missing: float
     if is_height and cell == "":
         if missing is not None and np.isnan(missing):
             return missing
-        leaves = f"{given('missing', NAN)} leaves such points out"
+        leaves = "missing = nan leaves such points out"
         raise ValueError(f"line {line}: column {column} is blank; {leaves}")
     value = value_of(cell, decimal)
     if value is None:
@@ -238,17 +237,15 @@ def _columns(columns: object) -> tuple[Column, ...] | None:
     if columns is None:
         return None
     several = [columns] if isinstance(columns, str | int | np.integer) else columns
-    asked = items(called("columns"), several, "names or numbers of columns")
+    asked = items("columns", several, "names or numbers of columns")
     if not 1 <= len(asked) <= MOST_COLUMNS:
-        raise ValueError(
-            f"{called('columns')} = {shown(columns)}: must be 1 to {MOST_COLUMNS} columns"
-        )
+        raise ValueError(f"columns = {shown(columns)}: must be 1 to {MOST_COLUMNS} columns")
     found: list[Any] = []
     for k, each in enumerate(asked):
         is_place = isinstance(each, int | np.integer) and not isinstance(each, bool) and each >= 0
         if not (is_place or isinstance(each, str)):
             allowed = "must be a column's name or its number from 0"
-            raise ValueError(f"{called('columns')}[{k}] = {shown(each)}: {allowed}")
+            raise ValueError(f"columns[{k}] = {shown(each)}: {allowed}")
         found.append(int(each) if is_place else each)
     return tuple(found)
 
@@ -257,22 +254,20 @@ def _check_columns(wanted: tuple[Column, ...] | None, *, has_x: bool) -> None:
     """Refuses x without an elevation."""
     if has_x and wanted is not None and len(wanted) < 2:
         allowed = "must be that of x and one elevation or more"
-        other = f"or give {called('spacing')} in place of x"
-        raise ValueError(f"{called('columns')} = {shown(list(wanted))}: {allowed}; {other}")
+        other = "or give spacing in place of x"
+        raise ValueError(f"columns = {shown(list(wanted))}: {allowed}; {other}")
 
 
 def _factors(scale: object) -> tuple[float, float]:
-    factors = numbers(called("scale"), scale)
+    factors = numbers("scale", scale)
     if len(factors) != 2:
-        raise ValueError(
-            f"{called('scale')} = {shown(scale)}: must be two factors, of x and elevation"
-        )
+        raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
     return factors[0], factors[1]
 
 
 def _delimiter(delimiter: object) -> str:
     """One character; a tab also as it is written."""
-    key = called("delimiter")
+    key = "delimiter"
     found = text(key, delimiter)
     found = "\t" if found == r"\t" else found
     if len(found) != 1 or found in '\r\n"':

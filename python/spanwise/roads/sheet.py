@@ -10,7 +10,6 @@ from typing import Final, TypeAlias
 
 from spanwise._checks import shown
 from spanwise.roads import erd
-from spanwise.roads._options import called
 from spanwise.roads.sniffing import DELIMITERS, decimal_of, delimiter_of, rows_of, value_of
 
 #: Number or name of a column.
@@ -97,7 +96,7 @@ class Sheet:
             of = f"column {place} ({self.names[place]})" if place < len(self.names) else "x"
         if self.is_strict and unit and not _is_unit(unit):
             where = f"line {self.head}: " if self.head else ""
-            allowed = f"is not known; give {called('scale')}"
+            allowed = "is not known; give scale"
             raise ValueError(f"{where}unit {unit!r} of {of}: {allowed}")
         return METRES.get(unit.lower(), 1.0)
 

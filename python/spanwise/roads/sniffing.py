@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Final
 
 from spanwise._checks import shown
-from spanwise.roads._options import given
 from spanwise.roads.erd import MARK
 
 #: Delimiters that are looked for; where two serve alike the first is meant. Blanks come in runs.
@@ -116,7 +115,7 @@ def delimiter_of(lines: Sequence[str], least: int, decimal: str | None) -> str:
             return ","
         # No whole number begins with 0: 3,05 is one number.
         if not any(re.search(r",0\d", pair) for pair in pairs):
-            allowed = f"give {given('decimal', ',')} or {given('delimiter', ',')}"
+            allowed = "give decimal = ',' or delimiter = ','"
             raise ValueError(f"{shown(pairs[0])} may be one number or two; {allowed}")
     return best if any(served(best)) else ","
 
@@ -143,7 +142,7 @@ def decimal_of(rows: Iterable[list[str]], least: int) -> str:
                 return marks[0]
             doubtful = cell if marks[0] == "," else doubtful
     if doubtful is not None:
-        allowed = f"give {given('decimal', ',')} or {given('decimal', '.')}"
+        allowed = "give decimal = ',' or decimal = '.'"
         raise ValueError(f"{shown(doubtful)} may be thousands or have decimals; {allowed}")
     return "."
 
