@@ -1,4 +1,4 @@
-"""What the work does not change, what ends it, and what it may take: hash, interrupts, memory."""
+"""What the work does not change, what ends it, and what it may take: hash, failures, memory."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_progress() -> None:
     assert [done for done, _ in told] == sorted(done for done, _ in told)
     told.clear()
     started = time.perf_counter()
-    sw.ensemble(BRIDGE, TRUCK, samples=5000, progress=lambda *now: told.append(now), **GIVEN)
+    sw.ensemble(BRIDGE, TRUCK, samples=2000, progress=lambda *now: told.append(now), **GIVEN)
     assert len(told) <= (time.perf_counter() - started) / 0.1 + 1
 
 
@@ -108,74 +108,12 @@ def test_what_the_listener_raises_ends_the_work() -> None:
     def listener(done: int, total: int) -> None:
         raise Enough(f"{done} of {total}")
 
-    started = time.perf_counter()
-    with pytest.raises(Enough, match=f"of {LONG}"):
+    with pytest.raises(Enough, match=f"of {LONG}") as raised:
         sw.ensemble(BRIDGE, TRUCK, samples=LONG, progress=listener, **GIVEN)
-    assert time.perf_counter() - started < 1.0
+    # At the first that it was told.
+    assert int(str(raised.value).split()[0]) < LONG / 4
     with pytest.raises(Enough, match="3 of 3"):
         sw.ensemble(BRIDGE, TRUCK, samples=3, progress=listener, **GIVEN)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
-@pytest.mark.parametrize("drive", ["constant-speed", "constant-traction"])
-def test_interrupt(drive: str) -> None:
-    # In a process of its own, whose main thread takes the signal.
-    program = f"""
-        import os, signal, threading, time
-        import spanwise as sw
-
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        bridge = sw.Bridge(spans=[18.288] * 2, EI=1.94148e9, mass=6037.7, stations_per_span=3)
-        sent = []
-
-        def send():
-            sent.append(time.perf_counter())
-            os.kill(os.getpid(), signal.SIGINT)
-
-        threading.Timer(0.4, send).start()
-        try:
-            sw.ensemble(
-                bridge, sw.vehicles.kishan_1973(), samples={LONG}, speed=20.0, drive={drive!r},
-                road=sw.ISO8608("B"), damping=0.0,
-            )
-        except KeyboardInterrupt:
-            print(time.perf_counter() - sent[0])
-    """
-    command = [sys.executable, "-c", textwrap.dedent(program)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-    assert done.stderr == ""
-    assert float(done.stdout) < 0.5
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
-def test_interrupt_while_the_bridge_is_prepared() -> None:
-    program = """
-        import os, signal, threading, time
-        import numpy as np
-        import spanwise as sw
-
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        bridge = sw.Bridge(spans=[20.0] * 8, EI=2e9, mass=6e3, stations_per_span=20)
-        bridge.modes(3)
-        sent = []
-
-        def send():
-            sent.append(time.perf_counter())
-            os.kill(os.getpid(), signal.SIGINT)
-
-        threading.Timer(0.3, send).start()
-        try:
-            while True:
-                sw.ensemble(bridge, sw.vehicles.kishan_1973(), samples=1, speed=20.0, modes=3,
-                            damping=0.0,
-                            sections=np.linspace(0.0, 159.0 + np.random.rand(), 900))
-        except KeyboardInterrupt:
-            print(time.perf_counter() - sent[0])
-    """
-    command = [sys.executable, "-c", textwrap.dedent(program)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-    assert done.stderr == ""
-    assert float(done.stdout) < 2.0
 
 
 def test_several_at_once() -> None:
@@ -297,20 +235,21 @@ MEASURE = """
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no such measure")
 @pytest.mark.parametrize(
-    "samples",
+    ("samples", "most"),
     [
-        100_000,
+        (10_000, 40e6),
         pytest.param(
             1_000_000,
+            300e6,
             marks=pytest.mark.skipif(
                 "SPANWISE_SLOW" not in os.environ, reason="minutes; SPANWISE_SLOW=1 runs it"
             ),
         ),
     ],
 )
-def test_memory(samples: int) -> None:
+def test_memory(samples: int, most: float) -> None:
     command = [sys.executable, "-c", textwrap.dedent(MEASURE), str(samples)]
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=1800)
     beyond, arrays = map(int, done.stdout.split())
     assert arrays > 2000 * samples
-    assert beyond < 300e6
+    assert beyond < most
