@@ -29,6 +29,8 @@ speed = 22.86
 drive = "constant-traction"
 modes = 3
 damping = 0
+step = 5e-3
+beta = 0.25
 """
 
 #: So soft that the vehicle does not come out of the sag.
@@ -315,7 +317,7 @@ def test_figures_of_traffic(tmp_path: Path) -> None:
     bridge, _, crossing = CASE.partition("[vehicle]")
     traffic = '[[traffic]]\nvehicle = { preset = "hs20" }\n'
     other = traffic + 'direction = "left"\n'
-    crossing = "[crossing]\nspeed = 20.0\n"
+    crossing = "[crossing]\nspeed = 20.0\nstep = 5e-3\nbeta = 0.25\n"
     case.write_text(bridge + traffic + other + ROAD + crossing, encoding="utf-8")
     assert main(["cross", str(case), "--plot", str(tmp_path / "figures")]) == 0
     names = {*FIGURES, "vehicle_1", "vehicle_2", "road"} - {"vehicle"}
@@ -362,7 +364,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (CASE.replace("6037.6", "-1"), r"[bridge]: mass"),
         (CASE.replace("speed", "sped"), "did you mean 'speed'?"),
-        (CASE + "x = [", "line 14: is not valid TOML: Invalid value: x = ["),
+        (CASE + "x = [", "line 16: is not valid TOML: Invalid value: x = ["),
         (CASE.replace("modes = 3", "modes = 9"), "modes = 9: must be 1 to 6"),
         (CASE.replace("traction", "traktion"), "drive = 'constant-traktion'"),
     ],
@@ -494,7 +496,7 @@ def test_standard_output_that_is_full(case: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
 def test_interrupt(case: Path) -> None:
     # A crossing of seconds, interrupted by the process itself soon after it has begun.
-    slow = CASE.replace("modes = 3", "modes = 6\nstep = 1e-6")
+    slow = CASE.replace("5e-3", "1e-6").replace("modes = 3", "modes = 6")
     case.write_text(slow, encoding="utf-8")
     program = f"""
         import os, signal, sys, threading
@@ -502,7 +504,7 @@ def test_interrupt(case: Path) -> None:
 
         # Started in the background, the process would inherit that interrupts are ignored.
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         sys.exit(main(["cross", {str(case)!r}, "--json", {str(case.parent / "run.json")!r}]))
     """
     command = [sys.executable, "-c", textwrap.dedent(program)]

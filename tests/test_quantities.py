@@ -20,7 +20,13 @@ from spanwise.quantities import RESPONSES, Factor, Response
 
 PACKAGE = Path(sw.__file__).parent
 BRIDGE = sw.Bridge(spans=[18.0, 12.0], EI=2e9, mass=8e3, stations_per_span=3)
-GIVEN: dict[str, Any] = {"speed": 30.0, "modes": 3, "damping": 0.02, "road": sw.ISO8608("D")}
+GIVEN: dict[str, Any] = {
+    "speed": 30.0,
+    "modes": 3,
+    "damping": 0.02,
+    "road": sw.ISO8608("D"),
+    "approach": 20.0,
+}
 
 #: All that Python has to know of a response that the core has learnt.
 ROTATION = Response(

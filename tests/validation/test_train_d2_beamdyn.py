@@ -11,6 +11,7 @@ the influence line by its chords, and moves the train from node to node.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final
 
 import numpy as np
@@ -64,9 +65,11 @@ def train() -> sw.ForceTrain:
     return sw.ForceTrain(loads=[AXLE] * 24, spacings=list(spacings))
 
 
-def crossing(speed: float, **given: object) -> sw.Run:
-    options = {"modes": 3, "damping": 0.01, "tail": 1.0, "sections": SECTIONS, **given}
-    return sw.cross(BRIDGE, train(), speed=speed / 3.6, **options)
+@cache
+def crossing(speed: float) -> sw.Run:
+    return sw.cross(
+        BRIDGE, train(), speed=speed / 3.6, modes=3, damping=0.01, tail=1.0, sections=SECTIONS
+    )
 
 
 def line(x: np.ndarray) -> np.ndarray:
