@@ -297,7 +297,7 @@ VEHICLES: list[tuple[Callable[..., object], dict[str, Any], tuple[str, ...]]] = 
         {"friction_limit": 1, "initial_friction": 2},
         ("bodies[1].springs[0].initial_friction", "2 N", "-1 to 1 N"),
     ),
-    (train, {}, ("positions", "2 loads", "or spacings")),
+    (train, {}, ("positions", "2 loads", "spacings")),
     (train, {"positions": [0.0]}, ("positions", "1 values", "each of the 2 loads")),
     (train, {"positions": [0.0, 1.0]}, ("positions[1]", "1 m", "front to rear", "0 m")),
     (train, {"positions": [1.0, 0.0], "spacings": [1.0]}, ("spacings", "not beside positions")),
@@ -330,7 +330,11 @@ BODIES: list[tuple[Callable[..., sw.Vehicle], dict[str, Any], tuple[str, ...]]] 
 TRAINS: list[tuple[Callable[..., object], dict[str, Any], tuple[str, ...]]] = [
     (sw.ForceTrain, {"loads": [1, -1], "spacings": [1]}, ("loads[1] = -1", POSITIVE)),
     (sw.ForceTrain, {"loads": [1, 1], "positions": [0, 1]}, ("positions[1] = 1 m", "less than 0")),
-    (sw.ForceTrain, {"loads": [1, 1]}, ("positions = []", "each of the 2 loads, or spacings")),
+    (
+        sw.ForceTrain,
+        {"loads": [1, 1]},
+        ("missing spacings", "one less than the 2 loads, or positions"),
+    ),
     (sw.MovingMasses, {"masses": [1, 1], "spacings": [1, 1]}, ("spacings = 2 values", "one less")),
     (sw.MovingMasses, {"masses": [0]}, ("masses[0] = 0", POSITIVE)),
     (sw.vehicles.hs20, {"rear_spacing": 20}, ("rear_spacing = 20 m", "4.2672 to 9.144 m")),

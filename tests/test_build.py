@@ -75,10 +75,13 @@ def test_tables_become_what_the_hints_say() -> None:
         ({}, "^missing kind; allowed: oak, palm$"),
         ({"kind": "oka"}, r"^kind = 'oka': must be one of oak, palm \(did you mean 'oak'\?\)$"),
         ({"kind": "palm"}, "^missing fronds$"),
-        ({"kind": "oak", "ages": 1}, r"^unknown key 'ages' \(did you mean 'age'\?\); allowed: tw"),
+        (
+            {"kind": "oak", "ages": 1},
+            r"^unknown key 'ages' \(did you mean 'age'\?\); allowed: kind, tw",
+        ),
         ({"kind": "oak", "depth": 1}, r"^unknown key 'depth' \(belongs in \[soil\]\); allowed"),
         ({"kind": "oak", "fronds": 1}, r"'fronds' \(not beside kind = 'oak', but palm\); allow"),
-        ({"kind": "oak", 3: 1}, "^unknown key 3; allowed: twigs, age$"),
+        ({"kind": "oak", 3: 1}, "^unknown key 3; allowed: kind, twigs, age$"),
         (
             {"kind": "oak", "twigs": 3},
             r"^twigs = 3: must be a list of tables, \[\[tree\.twigs\]\]$",

@@ -393,7 +393,10 @@ REFUSED = [
         BRIDGE + "[vehicle]\nloads = [1e4]\nmass = 1e3" + CROSSING,
         r"mass = 1000\.0: not used with loads; allowed: loads, positions, spacings",
     ),
-    (BRIDGE + "[vehicle]\nloads = [1e4, 1e4]" + CROSSING, r"positions = \[\]: .*2 loads, or spac"),
+    (
+        BRIDGE + "[vehicle]\nloads = [1e4, 1e4]" + CROSSING,
+        r"missing spacings, one less than the 2 loads, or positions",
+    ),
     (BRIDGE + "[vehicle]\nbodies = 3" + CROSSING, r"bodies = 3: .*\[\[vehicle\.bodies\]\]"),
     (
         BRIDGE
@@ -501,13 +504,22 @@ REFUSED = [
         BRIDGE + TRAFFIC.replace('"acceleration"', '"accelerate"') + CROSSING,
         r"\[\[traffic\]\] number 1: drive\.kind = 'accelerate': .*did you mean 'acceleration'",
     ),
+    (
+        BRIDGE + TRAFFIC.replace("vehicle = { preset =", "preset = { a =", 1) + CROSSING,
+        r"number 1: unknown key 'preset' \(belongs in its vehicle: vehicle = { preset = \.\.\. }\)",
+    ),
+    (
+        BRIDGE + "[vehicle]\nload = [1e4, 1e4]\nspacings = [1.0]" + CROSSING,
+        r"unknown key 'load' \(did you mean 'loads'\?\); allowed: loads, positions, spacings$",
+    ),
+    (BRIDGE + "[vehicle]\nmas = 1e4\naxles = []" + CROSSING, r"'mas' \(did you mean 'mass'\?\)"),
     (BRIDGE + VEHICLE + "lane = 1" + CROSSING, r"'lane' \(belongs in each \[\[traffic\]\]\)"),
     (BRIDGE + VEHICLE + CROSSING + "entry = 1", r"'entry' \(belongs in each \[\[traffic\]\]\)"),
     # Road
     (BRIDGE + VEHICLE + CROSSING + "road = 1", r"'road' \(a table of its own, \[road\]\); allowed"),
     (
         BRIDGE + VEHICLE + CROSSING + ROAD.replace("seed", "sed"),
-        r"case, \[road\]: unknown key 'sed' \(did you mean 'seed'\?\); allowed: class, G, ",
+        r"case, \[road\]: unknown key 'sed' \(did you mean 'seed'\?\); allowed: kind, class, G, ",
     ),
     (
         BRIDGE + VEHICLE + CROSSING + ROAD + "speed = 3",

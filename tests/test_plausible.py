@@ -386,8 +386,9 @@ def test_on_the_command_line(tmp_path: Any, capsys: pytest.CaptureFixture[str]) 
     for command in (["cross", str(path)], ["ensemble", str(path), "--samples", "2"]):
         assert main(command) == 0
         out, err = capsys.readouterr()
-        assert err == ""
         assert out.count("warning   speed = 80: m/s, which is 288 km/h") == 1
+        assert err.startswith("spanwise: warning: speed = 80: m/s, which is 288 km/h")
+        assert err.count("\n") == 1
         assert main([*command, "--json", "-"]) == 0
         err = capsys.readouterr().err
         assert err.startswith("spanwise: warning: speed = 80: m/s, which is 288 km/h")

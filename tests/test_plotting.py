@@ -500,6 +500,21 @@ class Refusing:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
 
+@pytest.mark.parametrize("draw", ["envelope", "history", "ensemble"])
+def test_limits_are_drawn_in_the_unit_of_the_axis(two_spans: Scene, draw: str) -> None:
+    many = sw.ensemble(two_spans.bridge, two_spans.vehicle, samples=3, speed=20.0, modes=2)
+    drawing: Any = many.plot.envelope if draw == "ensemble" else getattr(two_spans.run.plot, draw)
+    without = drawing("moment").axes[0]
+    ax = drawing("moment", limit=[1.5e6, -2e5]).axes[0]
+    drawn = [line for line in ax.lines if line.get_linestyle() == ":"]
+    assert [line.get_ydata()[0] for line in drawn] == [1500.0, -200.0]
+    assert len(ax.lines) == len(without.lines) + 2
+    assert "limit" in [text.get_text() for text in ax.get_legend().get_texts()]
+    assert drawing("moment", limit=1.5e6).axes[0].get_ylim()[0] >= 1500.0
+    with pytest.raises(ValueError, match=r"limit = 'a': must be"):
+        drawing("moment", limit="a")
+
+
 @pytest.fixture
 def without_matplotlib(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:

@@ -447,3 +447,15 @@ def test_the_summary_of_a_run() -> None:
     force = sw.ForceTrain(loads=[1e5])
     text = sw.cross(simple, force, speed=5.0, modes=1, tail=0.0).summary()
     assert "reaction, uplift [kN]" not in text
+
+
+def test_a_long_train_and_deck_motion_in_a_summary() -> None:
+    bridge = sw.Bridge(spans=[30.0], EI=3e10, mass=1e4)
+    loads = [1.7e5 + 1e3 * k for k in range(32)]
+    train = sw.ForceTrain(loads=loads, spacings=31 * [6.0])
+    lines = sw.cross(bridge, train, speed=40.0, modes=1, damping=0.02).summary().splitlines()
+    (said,) = (line for line in lines if line.startswith("vehicle"))
+    assert said == "vehicle   32 static axle loads 170 to 201 kN; 186 m from first to last axle"
+    for name, static in (("slope", False), ("velocity", True), ("acceleration", True)):
+        (row,) = (line.split() for line in lines if line.startswith(f"{name} ["))
+        assert (row[-2] == "-") == static

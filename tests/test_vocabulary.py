@@ -191,3 +191,13 @@ def test_a_function_is_no_module_too() -> None:
     both = {name for name in modules & {*sw.__all__} if callable(getattr(sw, name))}
     assert not both
     assert not hasattr(sw, "run")
+
+
+def test_slope_is_a_rotation_too() -> None:
+    bridge, truck = sw.Bridge(spans=[20.0], EI=2e9, mass=5e3), sw.vehicles.kishan_1973()
+    run = sw.cross(bridge, truck, speed=20.0, modes=2, damping=0.0)
+    assert run.envelope("rotations") == run.envelope("slope")
+    given: Any = {"speed": 20.0, "modes": 2, "damping": 0.0, "quantities": ["rotation"]}
+    many = sw.ensemble(bridge, truck, samples=1, **given)
+    assert many.quantities == ("slope",)
+    assert many.envelope("rotation") == many.envelope("slope")

@@ -41,11 +41,13 @@ class Place:
     home: Callable[[str], str] = lambda key: ""
     #: What reads a value whose hint has one of these classes.
     readers: Mapping[type, Callable[[Any, Place], object]] = field(default_factory=dict)
+    #: A key that has been read already.
+    read: tuple[str, ...] = ()
 
     def __getitem__(self, key: object) -> Place:
-        if isinstance(key, int):
-            return replace(self, name=f"{self.name or self.table}[{key}]")
-        return replace(self, name=f"{self.name}.{key}" if self.name else str(key))
+        name = f"{self.name}.{key}" if self.name else str(key)
+        name = f"{self.name or self.table}[{key}]" if isinstance(key, int) else name
+        return replace(self, name=name, read=())
 
     def refused(self, said: str) -> ValueError:
         """The error that says so of the table that stands here."""
@@ -77,7 +79,8 @@ def check_known(
             # One and many are mistaken before tables are.
             many = [each for each in known if each.removesuffix("s") == str(key).removesuffix("s")]
             hint = suggestion(key, many) or home or suggestion(key, known)
-            raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {', '.join(known)}")
+            allowed = ", ".join([*place.read, *known])
+            raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {allowed}")
 
 
 @dataclass(frozen=True)
@@ -135,12 +138,17 @@ def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: 
     signs = {key: each for each in more for key in each.required if key not in first.keys}
     given = table if isinstance(table, Mapping) else {}
     sign = next((key for key in signs if key in given), None)
+    every = {key for each in makers for key in each.keys}
+    unknown = [key for key in given if key not in every and key not in others]
+    if sign is None:  # or one of which the nearest is there
+        meant = {suggestion(key, every) for key in unknown} - {""}
+        sign = next((key for key in signs if suggestion(key, [key]) in meant), None)
     maker = first if sign is None else signs[sign]
-    for key, value in given.items():
+    for key, value in () if unknown else given.items():
         users = [own for own, each in signs.items() if key in each.keys]
         if key not in maker.keys and (users or key in first.keys):
             used = f"not used with {sign}" if sign else f"used with {' or '.join(users)} only"
-            allowed = ", ".join(maker.keys)
+            allowed = ", ".join([*place.read, *maker.keys])
             raise ValueError(f"{place[key].name} = {shown(value)}: {used}; allowed: {allowed}")
     return maker.build(table, place, () if sign else [*others, *signs])
 
@@ -158,7 +166,7 @@ def build_kind(kinds: Mapping[str, Sequence[Maker[T]]], table: object, place: Pl
         return f" (not beside kind = {kind!r}, but {found})" if found else place.home(key)
 
     rest = {key: value for key, value in table.items() if key != "kind"}
-    return build_one(kinds[kind], rest, replace(place, home=beside))
+    return build_one(kinds[kind], rest, replace(place, home=beside, read=("kind",)))
 
 
 def keys_of(kinds: Mapping[str, Sequence[Maker[T]]]) -> set[str]:

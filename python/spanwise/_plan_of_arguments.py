@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final
 
 from numpy.typing import ArrayLike
 
-from spanwise._checks import array, count, flag, named, shown, whole_from
+from spanwise._checks import array, count, flag, shown, whole_from
 from spanwise._conditions import Conditions, Settings
 from spanwise._events import (
     Speeds,
@@ -23,7 +23,7 @@ from spanwise._plan import Plan
 from spanwise._variation import by_parameter, factors_of, refuse_overdamped
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
-from spanwise.quantities import RESPONSES, of_bridges, there_are
+from spanwise.quantities import RESPONSES, asked, of_bridges, there_are
 from spanwise.roads import Road
 
 #: Most samples: they are numbered in 32 bits.
@@ -40,7 +40,7 @@ def _responses(key: str, given: object) -> list[str]:
     names = [each.name for each in of_bridges()]
     if not isinstance(given, list | tuple) or not given:
         raise ValueError(f"{key} = {shown(given)}: must be a list of {', '.join(names)}")
-    return [named(f"{key}[{i}]", each, names) for i, each in enumerate(given)]
+    return [asked(f"{key}[{i}]", each, names) for i, each in enumerate(given)]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,6 @@ from spanwise._files import write_files
 from spanwise._key_options import add_key, add_set
 from spanwise._plain import json_lines
 from spanwise._shown import warned
-from spanwise._streams import tell
 from spanwise.case import Case
 from spanwise.roads import IriSegments, IsoClass, Road
 
@@ -74,7 +73,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
 
 def run(options: argparse.Namespace) -> str:
     """Writes the file asked for, and gives the text to print."""
-    with _doubts_kept(told=options.json == "-") as told:
+    with _doubts_kept() as told:
         road, files = Case.read_road(options.file, options.settings)
         start, end = _section(road, options.start, options.end)
         index = _or_reason(lambda: road.iri(start, end))
@@ -91,19 +90,19 @@ def run(options: argparse.Namespace) -> str:
 
 
 @contextmanager
-def _doubts_kept(*, told: bool) -> Iterator[list[str]]:
-    """Keeps warnings for the text, and tells them if there is none or the road is refused."""
+def _doubts_kept() -> Iterator[list[str]]:
+    """Keeps warnings for the text too."""
     kept: list[str] = []
-    refused = True
-    with warnings.catch_warnings(record=True) as doubts:
-        warnings.simplefilter("always", UserWarning)
-        try:
-            yield kept
-            refused = False
-        finally:
-            kept += dict.fromkeys(str(doubt.message) for doubt in doubts)
-            for message in kept if told or refused else ():
-                tell(f"spanwise: warning: {message}")
+    try:
+        with warnings.catch_warnings(record=True) as doubts:
+            warnings.simplefilter("always", UserWarning)
+            try:
+                yield kept
+            finally:
+                kept += dict.fromkeys(str(doubt.message) for doubt in doubts)
+    finally:
+        for said in kept:
+            warnings.warn(said, stacklevel=2)
 
 
 def _or_reason(ask: Callable[[], Found]) -> Found | str:

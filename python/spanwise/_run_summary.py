@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._shown import warned
-from spanwise._table import Block, Table, html, listed, text
+from spanwise._table import MANY, Block, Table, html, listed, ranged, text
 from spanwise.bridge import Bridge
 from spanwise.damping import in_words
 from spanwise.layout import Support
@@ -89,12 +89,13 @@ def _vehicle(run: Run, number: int, passage: Passage) -> Iterator[str]:
     truck, motion = passage.vehicle, run.vehicles[number]
     own = [k for k, (vehicle, _) in enumerate(run.axles) if vehicle == number + 1]
     name = "vehicle" if len(run.passages) == 1 else f"vehicle {number + 1}"
+    loads = run.static_axle_loads[own] / 1000.0
+    several = f"{len(own)} " if len(own) > MANY else ""
     # A train of forces has no mass.
     mass = f"{truck.total_mass / 1000.0:.4g} t; " if truck.total_mass > 0.0 else ""
     yield (
-        f"{name:<10}{truck._bodies_in_words}{mass}static axle loads "
-        f"{listed(run.static_axle_loads[own] / 1000.0, '.4g')} kN; {truck.wheelbase:.4g} m from "
-        "first to last axle"
+        f"{name:<10}{truck._bodies_in_words}{mass}{several}static axle loads "
+        f"{ranged(loads, '.4g')} kN; {truck.wheelbase:.4g} m from first to last axle"
     )
     if unsprung := truck._unsprung:
         masses = listed((each / 1000.0 for each in unsprung), ".4g")
@@ -152,10 +153,8 @@ def _varying(run: Run) -> Iterator[str]:
     percent = 100.0 * run.dynamic_load_coefficients
     if not percent.any():
         return
-    values = f"{percent.min():.1f} to {percent.max():.1f}"
-    if len(percent) <= 8:
-        values = listed(percent, ".1f")
-    yield f"loads     on the bridge {values} % from their static values (root mean square)"
+    varying = ranged(percent, ".1f")
+    yield f"loads     on the bridge {varying} % from their static values (root mean square)"
 
 
 def _contact_loss(run: Run) -> Iterator[str]:
@@ -195,10 +194,8 @@ def _rigidity(bridge: Bridge) -> str:
     at, values = (given["at"], given["values"]) if isinstance(given, Mapping) else (None, given)
     if np.ptp(values) == 0.0:
         return f"EI {values[0]:.5g} N m2; "
-    if len(values) > 8:
-        return f"EI {min(values):.5g} to {max(values):.5g} N m2; "
-    text = f"EI {listed(values, '.5g')} N m2"
-    if at is not None:
+    text = f"EI {ranged(values, '.5g')} N m2"
+    if at is not None and len(values) <= MANY:
         text += f" {'at' if len(at) == len(values) else 'between'} {listed(at, 'g')} m"
     return f"{text}; "
 
@@ -219,6 +216,8 @@ def _rows(run: Run, of: Response) -> Iterator[list[object]]:
     senses: list[Sense] = [*of.reported]
     if senses == ["positive"] and envelope.min.value.min() < -OPPOSITE * envelope.max.value.max():
         senses.append("negative")
+    # Deck motion has no static value.
+    still = not (envelope.static_max.value.any() or envelope.static_min.value.any())
     axles = of.axis == "axle"
     places = run.axle_names if axles else [f"x = {x:.3f} m" for x in envelope.x]
     for sense in senses:
@@ -231,7 +230,7 @@ def _rows(run: Run, of: Response) -> Iterator[list[object]]:
             places[i],
             float(dynamic.time[i]),
             float(dynamic.position[i]),
-            float(scale * static.value[i]),
+            np.nan if still else float(scale * static.value[i]),
             _factor(run, of, sense, i),
         ]
 

@@ -5,7 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+#: Most numbers that stand in a line one by one.
+MANY: Final = 8
 
 
 @dataclass(frozen=True)
@@ -74,6 +82,13 @@ def html(blocks: Iterable[Block]) -> str:
 def listed(values: Iterable[float], form: str) -> str:
     """Numbers with commas between."""
     return ", ".join(format(value, form) for value in values)
+
+
+def ranged(values: Sequence[float] | NDArray[np.float64], form: str) -> str:
+    """The same, and of many numbers the smallest and the largest."""
+    if len(values) <= MANY:
+        return listed(values, form)
+    return f"{min(values):{form}} to {max(values):{form}}"
 
 
 def _cell(value: object, form: str) -> str:

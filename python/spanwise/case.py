@@ -32,10 +32,10 @@ from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
 from spanwise.schema import (
-    PASSAGE,
     Reading,
     bridge_of,
     events_of,
+    passage_of,
     vehicle_of,
 )
 from spanwise.study import ensemble
@@ -283,9 +283,7 @@ class Case(Hashed):
             events = [(Passage(vehicle=read("vehicle", vehicle_of)),)]
         else:
             each = enumerate(tables["traffic"])
-            events = [
-                tuple(read("traffic", PASSAGE.build, one, where=_number(k)) for k, one in each)
-            ]
+            events = [tuple(read("traffic", passage_of, one, where=_number(k)) for k, one in each)]
         kinds = tuple(events) if len(events) > 1 else ()
         crossing, files = tables.get("crossing", {}), tuple(reading.files)
         return cls(bridge, events[0], crossing, road, source, files, sampling, kinds)

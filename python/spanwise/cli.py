@@ -46,12 +46,11 @@ def _main(arguments: Sequence[str] | None) -> int:
             warnings.simplefilter("always", UserWarning)
             warnings.filterwarnings("always", ".* is now .*", DeprecationWarning)
             options = _parser().parse_args(arguments)
-            text = options.work(options)
-        # What the text says is not said twice on a screen.
-        said = "" if getattr(options, "json", None) == "-" else " ".join(text.split())
-        for each in told:
-            if " ".join(str(each.message).split()) not in said:
-                tell(f"spanwise: warning: {each.message}")
+            try:
+                text = options.work(options)
+            finally:
+                for said in dict.fromkeys(str(each.message) for each in told):
+                    tell(f"spanwise: warning: {said}")
         say(text)
     except KeyboardInterrupt:
         tell("spanwise: interrupted")

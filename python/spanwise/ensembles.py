@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import file_path, is_list, items, named, shown, whole
+from spanwise._checks import file_path, is_list, items, shown, whole
 from spanwise._conditions import masked
 from spanwise._door import view
 from spanwise._plan import Plan
@@ -23,7 +23,7 @@ from spanwise._shown import many
 from spanwise._value import frozen
 from spanwise.extremes import Array, SampleExtremes, When, governing
 from spanwise.impact_factors import ByName
-from spanwise.quantities import RESPONSES, Axis, Response, factors, parts, telling
+from spanwise.quantities import RESPONSES, Axis, Response, asked, factors, parts, telling
 from spanwise.runs import Run
 from spanwise.samples import BodyAccelerations, Failure, SampleContactLoss
 
@@ -218,7 +218,7 @@ class Ensemble:
         ValueError
             If there is no such quantity, or it was not looked at.
         """
-        name = named("quantity", quantity, parts(whole=True))
+        name = asked("quantity", quantity, parts(whole=True))
         of = parts(whole=True)[name]
         if not self._looks_at(of):
             raise ValueError(f'quantity = "{name}": {self._not_looked_at}')
@@ -402,7 +402,7 @@ class Ensemble:
         RuntimeError
             If one of them is one that failed.
         """
-        quantity = named("quantity", quantity, parts())
+        quantity = asked("quantity", quantity, parts())
         if is_list(samples):
             rows = [
                 self._row(f"samples[{i}]", each) for i, each in enumerate(items("samples", samples))

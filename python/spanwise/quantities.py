@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias, TypeVar
 
 from spanwise._checks import named
+from spanwise._keys import alike
 
 T = TypeVar("T")
 Axis: TypeAlias = Literal["section", "support", "clamp", "axle"]
@@ -75,6 +76,8 @@ class Response:
         Impact factors that there are of it.
     usual : bool
         Whether ensembles look at it unless told what to look at.
+    also : tuple of str
+        Other names, which arguments may have.
     """
 
     name: str
@@ -88,6 +91,7 @@ class Response:
     reported: tuple[Sense, ...] = ("either",)
     factors: tuple[Factor, ...] = ()
     usual: bool = True
+    also: tuple[str, ...] = ()
 
     @property
     def noun(self) -> str:
@@ -183,6 +187,7 @@ _ROWS: Final = (
         signs=("down to the right", "up to the right"),
         title="Slope of the deflection",
         usual=False,
+        also=("rotation",),
     ),
     Response(
         "velocity",
@@ -245,7 +250,17 @@ def influence_lines() -> dict[str, Response]:
 
 def response(quantity: str) -> Response:
     """The response that is meant, with hyphens or underscores, in singular or plural."""
-    return RESPONSES[named("quantity", quantity, RESPONSES)]
+    return RESPONSES[asked("quantity", quantity, RESPONSES)]
+
+
+def asked(key: str, quantity: object, options: Iterable[str]) -> str:
+    """The one of several responses that is meant, under another name of it too."""
+    others = {name: each.name for each in RESPONSES.values() for name in each.also}
+    known = [*options]
+    meant = alike(quantity, [*known, *others])
+    if isinstance(meant, str) and meant not in known:
+        meant = others.get(meant, meant)
+    return str(named(key, meant, known))
 
 
 def there_are(missing: Sequence[str], *, clamps: bool) -> list[Response]:

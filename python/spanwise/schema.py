@@ -105,14 +105,24 @@ class Reading:
         return value
 
 
+def passage_of(table: Any, place: Place) -> Passage:
+    """The passage of a table."""
+
+    def home(key: str) -> str:
+        inside = f" (belongs in its vehicle: vehicle = {{ {key} = ... }})"
+        return inside if key in places()["vehicle"]["[vehicle]"] else place.home(key)
+
+    return PASSAGE.build(table, replace(place, home=home))
+
+
 def events_of(tables: Any, place: Place) -> list[tuple[Passage, ...]]:
     """Kinds of event, each the table of a passage or a list of them."""
     if not isinstance(tables, list | tuple) or not tables:
         raise place["events"].wrong(tables, "tables, [[events]]")
     return [
-        tuple(PASSAGE.build(one, place[k][i]) for i, one in enumerate(each))
+        tuple(passage_of(one, place[k][i]) for i, one in enumerate(each))
         if isinstance(each, list | tuple)
-        else (PASSAGE.build(each, place[k]),)
+        else (passage_of(each, place[k]),)
         for k, each in enumerate(tables)
     ]
 

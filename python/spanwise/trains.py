@@ -100,7 +100,7 @@ def _positions(
         if not given and count == 1:
             return [0.0]
         if not given:
-            raise ValueError(f"positions = []: give one for each of the {count} {key}, or spacings")
+            raise ValueError(f"missing spacings, one less than the {count} {key}, or positions")
         return given
     if given:
         raise ValueError(f"spacings = {shown(spacings)}: not beside positions; give one of the two")

@@ -19,6 +19,7 @@ from spanwise.plotting.style import (
     along,
     axes_for,
     legend_above,
+    limits_on,
     name_places,
     name_supports,
     response_on,
@@ -126,7 +127,13 @@ class EnsemblePlot:
 
     @styled
     @telling
-    def envelope(self, quantity: str = "moment", ax: Axes | None = None) -> Figure:
+    def envelope(
+        self,
+        quantity: str = "moment",
+        ax: Axes | None = None,
+        *,
+        limit: float | Sequence[float] | None = None,
+    ) -> Figure:
         """Largest and smallest values along the bridge: median, band from 5 to 95 %, and static.
 
         Parameters
@@ -135,6 +142,9 @@ class EnsemblePlot:
             The response:
 
             {bridge}
+        limit : float or list of float, optional
+            Where lines are drawn for comparison, in the unit of the response, such as 3.5 for an
+            acceleration [m/s2].
 
         Raises
         ------
@@ -180,6 +190,7 @@ class EnsemblePlot:
         else:
             name_supports(ax, ensemble.bridge, of.axis)
         zero_line(ax)
+        limits_on(ax, of, limit)
         response_on(ax, of)
         legend_above(ax, clear=1.6 if by_section else 0.5)
         return whole(ax)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -24,6 +25,7 @@ from spanwise.plotting.style import (
     axes_for,
     figure_for,
     legend_above,
+    limits_on,
     new_figure,
     response_on,
     styled,
@@ -113,7 +115,13 @@ class RunPlot:
 
     @styled
     @telling
-    def envelope(self, quantity: str = "moment", *, ax: Axes | None = None) -> Figure:
+    def envelope(
+        self,
+        quantity: str = "moment",
+        *,
+        limit: float | Sequence[float] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
         """Largest and smallest values along the bridge, dynamic and static.
 
         Deflections and sagging moments are drawn downward. Of reactions, clamp moments and axle
@@ -125,10 +133,14 @@ class RunPlot:
             The response:
 
             {responses}
+        limit : float or list of float, optional
+            Where lines are drawn for comparison, in the unit of the response, such as 3.5 for an
+            acceleration [m/s2].
         """
         of = response(quantity)
         ax = axes_for(ax)
         zero_line(ax)
+        limits_on(ax, of, limit)
         draw = draw_curves if of.axis == "section" else draw_bars
         draw(ax, self._run, of)
         response_on(ax, of)
@@ -169,6 +181,7 @@ class RunPlot:
         at: float | None = None,
         *,
         side: Side | None = None,
+        limit: float | Sequence[float] | None = None,
         ax: Axes | None = None,
     ) -> Figure:
         """A quantity against time, dynamic and static, with the position of the front axle on top.
@@ -185,6 +198,9 @@ class RunPlot:
         side : {"left", "right"}, optional
             Side of the section at which the shear is taken; by default the right one, but at the
             right end of the bridge the left one.
+        limit : float or list of float, optional
+            Where lines are drawn for comparison, in the unit of the response, such as 3.5 for an
+            acceleration [m/s2].
         """
         run, of = self._run, response(quantity)
         where, dynamic, static = column(run, of, at, side)
@@ -192,6 +208,7 @@ class RunPlot:
         zero_line(ax)
         ax.plot(run.time, of.shown[1] * dynamic, label="dynamic", **DYNAMIC)
         ax.plot(run.time, of.shown[1] * static, label="static", **STATIC)
+        limits_on(ax, of, limit)
         if of.axis == "axle":
             mark_lift_offs(ax, run, run.axle_names.index(where))
         ax.set_xlabel("Time [s]")

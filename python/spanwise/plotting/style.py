@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
-from spanwise._checks import shown
+from spanwise._checks import finite, numbers, shown
 from spanwise._door import require
 
 if TYPE_CHECKING:
@@ -183,6 +183,15 @@ def along(
 def zero_line(ax: Axes, at: float = 0.0) -> None:
     """A thin line at nought, or at another value that the eye should compare with."""
     ax.axhline(at, color=GREY, linewidth=0.7, zorder=0.6)
+
+
+def limits_on(ax: Axes, of: Response, limit: float | Sequence[float] | None) -> None:
+    """Dotted lines at limits that a caller has given in SI."""
+    several = isinstance(limit, list | tuple)
+    levels = numbers("limit", limit) if several else [] if limit is None else [limit]
+    for k, each in enumerate(levels):
+        level = of.shown[1] * finite("limit", each)
+        ax.axhline(level, color=GREY, linestyle=":", label="limit" if k == 0 else None)
 
 
 def legend_above(ax: Axes, *, columns: int = 4, clear: float = 1.6) -> None:
