@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A value outside what is allowed.
-    #[error("{key} = {value}: {allowed}")]
+    #[error("{}", self.in_words())]
     Input {
         /// Name of the argument, as the user wrote it.
         key: String,
@@ -14,7 +14,7 @@ pub enum Error {
         allowed: String,
     },
     /// What would take more memory than this machine has left.
-    #[error("{key} = {value}: {allowed}")]
+    #[error("{}", self.in_words())]
     Memory {
         /// Name of the argument that asks for it.
         key: String,
@@ -24,10 +24,7 @@ pub enum Error {
         allowed: String,
     },
     /// The supports leave a rigid-body motion free.
-    #[error(
-        "unstable bridge: supports = [{supports}] leave it free to {motion}; \
-         give at least one clamped end or two supports at different positions"
-    )]
+    #[error("{}", self.in_words())]
     Unstable {
         /// The supports as given.
         supports: String,
@@ -35,11 +32,7 @@ pub enum Error {
         motion: &'static str,
     },
     /// The hinges leave parts of the beam free to turn.
-    #[error(
-        "hinges[{hinge}] = {at} m: makes a mechanism of the bridge, which can turn there without resistance{}; \
-         take it out or add a support",
-        if *hinge > 0 { " now that the hinges to its left do" } else { "" }
-    )]
+    #[error("{}", self.in_words())]
     Mechanism {
         /// Number of the first hinge, left to right, that turns freely.
         hinge: usize,
@@ -47,10 +40,7 @@ pub enum Error {
         at: f64,
     },
     /// A time step beyond the stability limit of the chosen Newmark scheme.
-    #[error(
-        "step = {step} s: Newmark with beta = {beta} is stable only for steps up to {limit:.6e} s here \
-         (fastest coupled frequency about {frequency:.3} Hz); shorten the step or use beta = 0.25"
-    )]
+    #[error("{}", self.in_words())]
     StepTooLong {
         /// The step asked for [s].
         step: f64,
@@ -146,14 +136,43 @@ impl Error {
 
     /// Whether the caller's input is at fault (otherwise the numerics are, or the user interrupted).
     pub fn is_input(&self) -> bool {
-        matches!(
-            self,
-            Error::Input { .. }
-                | Error::Memory { .. }
-                | Error::Unstable { .. }
-                | Error::Mechanism { .. }
-                | Error::StepTooLong { .. }
-        )
+        self.refused().is_some()
+    }
+
+    /// Name and value of what is refused, and what is allowed, if the caller's input is at fault.
+    pub fn refused(&self) -> Option<[String; 3]> {
+        let (key, value, allowed) = match self {
+            Error::Input { key, value, allowed } | Error::Memory { key, value, allowed } => {
+                (key.clone(), value.clone(), allowed.clone())
+            }
+            Error::Unstable { supports, motion } => {
+                let advice = "give at least one clamped end or two supports at different positions";
+                let allowed = format!("leave the bridge unstable, free to {motion}; {advice}");
+                ("supports".to_string(), format!("[{supports}]"), allowed)
+            }
+            Error::Mechanism { hinge, at } => {
+                let others = if *hinge > 0 { " now that the hinges to its left do" } else { "" };
+                let allowed = format!(
+                    "makes a mechanism of the bridge, which can turn there without resistance{others}; take it out or \
+                     add a support"
+                );
+                (format!("hinges[{hinge}]"), format!("{at} m"), allowed)
+            }
+            Error::StepTooLong { step, beta, limit, frequency } => {
+                let allowed = format!(
+                    "Newmark with beta = {beta} is stable only for steps up to {limit:.6e} s here (fastest coupled \
+                     frequency about {frequency:.3} Hz); shorten the step or use beta = 0.25"
+                );
+                ("step".to_string(), format!("{step} s"), allowed)
+            }
+            _ => return None,
+        };
+        Some([key, value, allowed])
+    }
+
+    /// What is refused, in one sentence.
+    fn in_words(&self) -> String {
+        self.refused().map_or_else(String::new, |[key, value, allowed]| format!("{key} = {value}: {allowed}"))
     }
 }
 

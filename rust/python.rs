@@ -15,9 +15,10 @@ use std::time::{Duration, Instant};
 use faer::Mat;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyBytes, PyType};
 
 use crate::ensemble::Progress;
 use crate::error::Error;
@@ -37,9 +38,18 @@ const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
 impl From<Error> for PyErr {
     fn from(error: Error) -> Self {
-        let text = error.to_string();
-        if error.is_input() { PyValueError::new_err(text) } else { PyRuntimeError::new_err(text) }
+        match error.refused() {
+            Some(parts) => Python::attach(|py| refused(py, parts)).unwrap_or_else(|failed| failed),
+            None => PyRuntimeError::new_err(error.to_string()),
+        }
     }
+}
+
+/// The error of Python that knows the parts of its message.
+fn refused(py: Python<'_>, [key, value, allowed]: [String; 3]) -> PyResult<PyErr> {
+    static CLASS: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let class = CLASS.import(py, "spanwise.errors", "InputError")?;
+    Ok(PyErr::from_type(class.clone(), (key, value, allowed)))
 }
 
 /// Runs `work` with the interpreter released. Every 100 ms its question whether to go on attaches again and lets Python

@@ -10,6 +10,7 @@ from spanwise.case import Case, CaseError
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
 from spanwise.ensembles import Ensemble
+from spanwise.errors import InputError
 from spanwise.extremes import Envelope, Extremes
 from spanwise.impact_factors import ImpactFactors
 from spanwise.layout import Along, Support
@@ -52,6 +53,7 @@ __all__ = [
     "ForceTrain",
     "Hinge",
     "ImpactFactors",
+    "InputError",
     "Joint",
     "LiftOff",
     "Modes",

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from spanwise._build import Place, check_known
 from spanwise._checks import array, shown
 from spanwise._warnings import PlausibilityWarning, warn
+from spanwise.errors import InputError
 from spanwise.quantities import of_bridges
 
 Array: TypeAlias = NDArray[np.float64]
@@ -34,7 +35,7 @@ def matrix(key: str, value: object) -> Array:
     """An array of two dimensions."""
     values = array(key, value)
     if values.ndim != 2:
-        raise ValueError(f"{key}: must have 2 dimensions, not {values.ndim}")
+        raise InputError(key, None, f"must have 2 dimensions, not {values.ndim}")
     return np.ascontiguousarray(values)
 
 
@@ -44,9 +45,11 @@ def sides(key: str, value: object) -> Sides:
     if values.ndim == 3 and values.shape[2] == 2:
         return np.ascontiguousarray(values[..., 1]), np.ascontiguousarray(values[..., 0])
     if values.ndim != 2:
-        raise ValueError(
-            f"{key}: must have 2 dimensions, or 3 with the left and the right side on the last; "
-            f"not {values.ndim} of shape {values.shape}"
+        raise InputError(
+            key,
+            None,
+            "must have 2 dimensions, or 3 with the left and the right side on the last; not "
+            f"{values.ndim} of shape {values.shape}",
         )
     return np.ascontiguousarray(values), None
 
@@ -58,7 +61,7 @@ def influence_lines(influence: object, slopes: object, modal: object) -> list[Li
     for key, table in (("influence_slopes", derivatives), ("modal", responses)):
         for name in table:
             if name not in lines:
-                raise ValueError(f"{key}: {name!r} has no influence line; give it in influence")
+                raise InputError(key, None, f"{name!r} has no influence line; give it in influence")
     return [
         (
             name,
@@ -98,19 +101,23 @@ def check_flexibility(
     nought = _NOUGHT * float(np.abs(deflections).max(initial=0.0))
     low = int(np.argmin(own))
     if own[low] < -nought:
-        raise ValueError(
-            f"influence deflection = {own[low]:.4g} m/N at its own section, x = {sections[low]:g} "
-            "m: must be 0 or more; deflections are positive down: change the sign"
+        raise InputError(
+            "influence deflection",
+            f"{own[low]:.4g} m/N at its own section, x = {sections[low]:g} m",
+            "must be 0 or more; deflections are positive down: change the sign",
         )
     with np.errstate(all="ignore"):  # too much is too much
         modal = (shapes[at] ** 2 / (2.0 * np.pi * np.asarray(frequencies)) ** 2).sum(axis=1)
     excess = modal - ((1.0 + _EXCESS) * own + nought)
     worst = int(np.argmax(excess))
     if excess[worst] > 0.0:
-        raise ValueError(
-            f"shapes: the modes alone deflect x = {sections[worst]:g} m by {modal[worst]:.4g} m/N, "
-            f"the influence line of deflection by {own[worst]:.4g} m/N, which must be more; the "
-            "shapes are not scaled to unit modal mass [kg^-1/2], or the frequencies are too low"
+        raise InputError(
+            "shapes",
+            None,
+            f"the modes alone deflect x = {sections[worst]:g} m by {modal[worst]:.4g} m/N, the "
+            f"influence line of deflection by {own[worst]:.4g} m/N, which must be more; the "
+            "shapes are not scaled to unit modal mass [kg^-1/2], or the frequencies are too "
+            "low",
         )
     free = own > nought
     if len(frequencies) > 1 and free.any():

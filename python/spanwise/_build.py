@@ -24,6 +24,7 @@ from typing import (
 
 from spanwise._checks import choice, shown
 from spanwise._keys import suggestion
+from spanwise.errors import InputError, refused
 
 T = TypeVar("T")
 Table: TypeAlias = Mapping[str, Any]
@@ -49,24 +50,23 @@ class Place:
         name = f"{self.name or self.table}[{key}]" if isinstance(key, int) else name
         return replace(self, name=name, read=())
 
-    def refused(self, said: str) -> ValueError:
+    def refused(self, said: str) -> InputError:
         """The error that says so of the table that stands here."""
-        return ValueError(f"{self.name}: {said}" if self.name else said)
+        return InputError(self.name, None, said)
 
-    def wrong(self, value: object, allowed: str) -> ValueError:
+    def wrong(self, value: object, allowed: str) -> InputError:
         """The error that says what the value here must be; ``[]`` is how a table is written."""
         written = re.sub(r"\[\d+\]", "", ".".join(filter(None, (self.table, self.name))))
-        name = f"{self.name} = " if self.name else ""
-        return ValueError(f"{name}{shown(value)}: must be {allowed.replace('[]', f'[{written}]')}")
+        return refused(self.name, value, f"must be {allowed.replace('[]', f'[{written}]')}")
 
 
 @contextmanager
-def within(place: str, kind: type[ValueError] = ValueError) -> Iterator[None]:
+def within(place: str, kind: type[InputError] = InputError) -> Iterator[None]:
     """Puts the place in front of what is said of a value."""
     try:
         yield
     except ValueError as error:
-        raise kind(f"{place}: {error}" if place else str(error)) from error
+        raise kind.of(error).within(place) from error
 
 
 def check_known(
@@ -149,7 +149,7 @@ def build_one(makers: Sequence[Maker[T]], table: object, place: Place, *others: 
         if key not in maker.keys and (users or key in first.keys):
             used = f"not used with {sign}" if sign else f"used with {' or '.join(users)} only"
             allowed = ", ".join([*place.read, *maker.keys])
-            raise ValueError(f"{place[key].name} = {shown(value)}: {used}; allowed: {allowed}")
+            raise refused(place[key].name, value, f"{used}; allowed: {allowed}")
     return maker.build(table, place, () if sign else [*others, *signs])
 
 

@@ -13,6 +13,7 @@ from spanwise._checks import shown
 from spanwise._conditions import Crossing
 from spanwise._keys import suggestion
 from spanwise._plan_of_arguments import Asked
+from spanwise.errors import InputError, refused
 from spanwise.schema import Places, belong, belongs, places
 
 #: Tables, as they are written.
@@ -39,22 +40,24 @@ def check_tables(tables: Table) -> None:
     for name, table in tables.items():
         several = isinstance(table, list) and len(table) > 0 and isinstance(table[0], Mapping)
         if name == "traffic" and not several:
-            raise ValueError(f"traffic = {shown(table)}: must be tables, [[traffic]]")
+            raise refused("traffic", table, "must be tables, [[traffic]]")
         many = name in ("traffic", "events") or (name == "road" and several)
         if not many and not isinstance(table, Mapping):
-            raise ValueError(f"{name} = {shown(table)}: must be a table, {TABLES[name]}")
+            raise refused(name, table, f"must be a table, {TABLES[name]}")
 
 
 def check_complete(tables: Table) -> None:
     """Refuses tables that are not enough for a case, or too many."""
     who = [name for name in ("vehicle", "traffic", "events") if name in tables]
     if len(who) > 1:
-        raise ValueError(f"{TABLES[who[0]]} and {TABLES[who[1]]}: give one of the two")
+        key = f"{TABLES[who[0]]} and {TABLES[who[1]]}"
+        raise InputError(key, None, "give one of the two")
     how = "ensemble" if "ensemble" in tables else "crossing"
     missing = [name for name in ("bridge", *(who or ["vehicle"]), how) if name not in tables]
     if missing:
         needs = "a case has [bridge], [vehicle] or [[traffic]], and [crossing] or [ensemble]"
-        raise ValueError(f"missing {', '.join(TABLES[name] for name in missing)}; {needs}")
+        said = f"missing {', '.join(TABLES[name] for name in missing)}; {needs}"
+        raise InputError("", None, said)
 
 
 def home(key: str) -> str:
@@ -85,7 +88,7 @@ def assignment(text: str, table: str) -> tuple[str, Any]:
     key = key.strip()
     if not equals or not _KEY.fullmatch(key):
         example = "such as crossing.speed=25 or vehicle.bodies[0].mass=9e3"
-        raise ValueError(f"{shown(text)}: must be key=value, {example}")
+        raise InputError(shown(text), None, f"must be key=value, {example}")
     return _with_table(key, table), value_of(value)
 
 
@@ -102,7 +105,7 @@ def _with_table(key: str, table: str) -> str:
     known = {each for own in _places().values() for keys in own.values() for each in keys}
     known |= TABLES.keys() if "." in key else set()
     said = home(name) or suggestion(name, known)
-    raise ValueError(f"{key}: in which table?{said}; give that too, as in crossing.speed=25")
+    raise InputError(key, None, f"in which table?{said}; give that too, as in crossing.speed=25")
 
 
 def value_of(text: str) -> Any:
@@ -111,9 +114,10 @@ def value_of(text: str) -> Any:
         table = parse_toml(f"value = {text}", text)
     except CaseError:
         if text.lstrip().startswith(_TOML):
-            raise ValueError(
-                f"{shown(text)}: is not a value in TOML, where words in lists have quotes: "
-                '["a", "b"]'
+            raise InputError(
+                shown(text),
+                None,
+                'is not a value in TOML, where words in lists have quotes: ["a", "b"]',
             ) from None
         try:
             return float(text)  # .5 and 25. are none in TOML
@@ -127,7 +131,7 @@ def assigned(tables: Table, settings: Mapping[str, Any]) -> dict[str, Any]:
     changed = deepcopy({**tables})
     for key, value in settings.items():
         if not _KEY.fullmatch(str(key)):
-            raise ValueError(f"{shown(key)}: must be table and key, such as crossing.speed")
+            raise InputError(shown(key), None, "must be table and key, such as crossing.speed")
         _assign(changed, key, deepcopy(value))
     return changed
 
@@ -139,13 +143,13 @@ def _assign(tables: Any, key: str, value: Any) -> None:
         number = each[0].isdecimal()
         step: Any = int(each[0]) if number else each[0]
         if number and not isinstance(found, list):
-            raise ValueError(f"{key}: {name} is {'no list' if found else 'not in the case'}")
+            raise InputError(key, None, f"{name} is {'no list' if found else 'not in the case'}")
         if number and step >= len(found):
-            raise ValueError(f"{key}: {name} has {len(found)}, counted from 0")
+            raise InputError(key, None, f"{name} has {len(found)}, counted from 0")
         if not number and isinstance(found, list):
-            raise ValueError(f"{key}: {name} is a list; name one of it, as {name}[0].{step}")
+            raise InputError(key, None, f"{name} is a list; name one of it, as {name}[0].{step}")
         if not number and not isinstance(found, dict):
-            raise ValueError(f"{key}: {name} = {shown(found)} is no table; give all of {name}")
+            raise InputError(key, None, f"{name} = {shown(found)} is no table; give all of {name}")
         if k == len(steps) - 1:
             found[step] = value
         else:

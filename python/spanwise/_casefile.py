@@ -8,6 +8,8 @@ import tomllib
 from pathlib import Path
 from typing import Any, Final
 
+from spanwise.errors import InputError
+
 #: Largest case file that is read [bytes].
 MAX_BYTES: Final = 2**20
 
@@ -26,7 +28,7 @@ LONG_KEY: Final = re.compile(
 POINT: Final = re.compile(r"(?<![\w.])(\d+\.(?!\d)|\.\d)")
 
 
-class CaseError(ValueError):
+class CaseError(InputError):
     """A case file that cannot be used, and why."""
 
 
@@ -35,49 +37,55 @@ def read_text(path: Path) -> str:
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
-        raise CaseError(f"{path}: is {kind}; a case is a TOML file")
+        raise CaseError(path, None, f"is {kind}; a case is a TOML file")
     if status.st_size > MAX_BYTES:
-        raise CaseError(f"{path}: has {status.st_size} bytes; a case file has at most {MAX_BYTES}")
+        raise CaseError(
+            path, None, f"has {status.st_size} bytes; a case file has at most {MAX_BYTES}"
+        )
     with path.open("rb") as file:
         content = file.read(MAX_BYTES + 1)
     if len(content) > MAX_BYTES:  # it has grown since, or did not tell its size
-        raise CaseError(f"{path}: is too large; a case file has at most {MAX_BYTES} bytes")
+        raise CaseError(path, None, f"is too large; a case file has at most {MAX_BYTES} bytes")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        raise CaseError(f"{path}, line {line}: is not UTF-8 text; a case is a TOML file") from error
+        raise CaseError(
+            f"{path}, line {line}", None, "is not UTF-8 text; a case is a TOML file"
+        ) from error
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:
     """The tables of a TOML text."""
     if len(text) > MAX_BYTES:
         raise CaseError(
-            f"{source}: text has {len(text)} characters; a case has at most {MAX_BYTES}"
+            source, None, f"text has {len(text)} characters; a case has at most {MAX_BYTES}"
         )
     if long := LONG_KEY.search(text):
         line = text.count("\n", 0, long.start()) + 1
-        raise CaseError(f"{source}, line {line}: a dotted key has at most {MAX_PARTS} parts")
+        raise CaseError(
+            f"{source}, line {line}", None, f"a dotted key has at most {MAX_PARTS} parts"
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(_syntax_error(str(error), text, source)) from error
+        raise _syntax_error(str(error), text, source) from error
     except RecursionError as error:
         raise CaseError(
-            f"{source}: is not valid TOML: brackets within brackets too deep"
+            source, None, "is not valid TOML: brackets within brackets too deep"
         ) from error
     except ValueError as error:  # a number of thousands of digits, a date that does not exist
-        raise CaseError(f"{source}: is not valid TOML: {error}") from error
+        raise CaseError(source, None, f"is not valid TOML: {error}") from error
 
 
-def _syntax_error(message: str, text: str, source: str) -> str:
+def _syntax_error(message: str, text: str, source: str) -> CaseError:
     """What tomllib says, with the file and the line first and the text of the line last."""
     where = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", message)
     if where is None:
-        return f"{source}: is not valid TOML: {message}"
+        return CaseError(source, None, f"is not valid TOML: {message}")
     line = int(where[1] or text.rstrip().count("\n") + 1)
     characters = text.split("\n")[line - 1].strip()[:80]
     shown = "".join(each if each.isprintable() else "?" for each in characters)
     hint = " (TOML wants digits on both sides of a point: 22.0)" if POINT.search(shown) else ""
     said = message.replace(where[0], "")
-    return f"{source}, line {line}: is not valid TOML: {said}: {shown}{hint}"
+    return CaseError(f"{source}, line {line}", None, f"is not valid TOML: {said}: {shown}{hint}")

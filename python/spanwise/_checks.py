@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from spanwise._keys import alike, suggestion
 from spanwise._shown import LONGEST
 from spanwise._shown import shown as shown
+from spanwise.errors import InputError, refused
 
 Name = TypeVar("Name")
 
@@ -32,11 +33,11 @@ def number(key: str, value: object) -> float:
     """One real number as a float."""
     value = _unwrapped(value)
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ValueError(f"{key} = {shown(value)}: must be a number")
+        raise refused(key, value, "must be a number")
     try:
         found = float(value)
     except OverflowError:
-        raise ValueError(f"{key} = {shown(value)}: is too large") from None
+        raise refused(key, value, "is too large") from None
     return found
 
 
@@ -44,7 +45,7 @@ def finite(key: str, value: object) -> float:
     """One finite real number as a float; refused in the words of the core, as the two below."""
     found = number(key, value)
     if not math.isfinite(found):
-        raise ValueError(f"{key} = {_plain(found)}: must be a finite number")
+        raise InputError(key, _plain(found), "must be a finite number")
     return found
 
 
@@ -52,7 +53,7 @@ def positive(key: str, value: object) -> float:
     """One finite real number above 0 as a float."""
     found = number(key, value)
     if not (math.isfinite(found) and found > 0.0):
-        raise ValueError(f"{key} = {_plain(found)}: must be finite and greater than 0")
+        raise InputError(key, _plain(found), "must be finite and greater than 0")
     return found
 
 
@@ -60,7 +61,7 @@ def not_negative(key: str, value: object) -> float:
     """One finite real number, 0 or more, as a float."""
     found = number(key, value)
     if not (math.isfinite(found) and found >= 0.0):
-        raise ValueError(f"{key} = {_plain(found)}: must be finite and 0 or more")
+        raise InputError(key, _plain(found), "must be finite and 0 or more")
     return found
 
 
@@ -84,7 +85,7 @@ def whole(key: str, value: object) -> int:
     """One whole number."""
     value = _unwrapped(value)
     if isinstance(value, bool) or not isinstance(value, Integral):
-        raise ValueError(f"{key} = {shown(value)}: must be a whole number")
+        raise refused(key, value, "must be a whole number")
     return int(value)
 
 
@@ -92,7 +93,7 @@ def whole_from(key: str, value: object, least: int, most: int) -> int:
     """One whole number within limits."""
     found = whole(key, value)
     if not least <= found <= most:
-        raise ValueError(f"{key} = {shown(found)}: must be from {least} to {most}")
+        raise refused(key, found, f"must be from {least} to {most}")
     return found
 
 
@@ -100,9 +101,9 @@ def count(key: str, value: object) -> int:
     """One whole number that is not negative."""
     found = whole(key, value)
     if found < 0:
-        raise ValueError(f"{key} = {shown(found)}: must not be negative")
+        raise refused(key, found, "must not be negative")
     if found > sys.maxsize:
-        raise ValueError(f"{key} = {shown(found)}: is too large, must be at most {sys.maxsize}")
+        raise refused(key, found, f"is too large, must be at most {sys.maxsize}")
     return found
 
 
@@ -118,7 +119,7 @@ def flag(key: str, value: object) -> bool:
     """True or false."""
     if isinstance(value, bool | np.bool_):
         return bool(value)
-    raise ValueError(f"{key} = {shown(value)}: must be true or false")
+    raise refused(key, value, "must be true or false")
 
 
 def word(key: str, value: object, *options: str) -> str:
@@ -126,7 +127,7 @@ def word(key: str, value: object, *options: str) -> str:
     if isinstance(value, str) and len(value) <= LONGEST and value.isprintable():
         return value
     allowed = " or ".join(filter(None, (", ".join(options[:-1]), *options[-1:]))) or "text"
-    raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
+    raise refused(key, value, f"must be {allowed}")
 
 
 def choice(key: str, value: object, options: Iterable[str]) -> str:
@@ -134,7 +135,7 @@ def choice(key: str, value: object, options: Iterable[str]) -> str:
     allowed = [*options]
     if not isinstance(value, str) or value not in allowed:
         near = suggestion(value, allowed)
-        raise ValueError(f"{key} = {shown(value)}: must be one of {', '.join(allowed)}{near}")
+        raise refused(key, value, f"must be one of {', '.join(allowed)}{near}")
     return str(value)
 
 
@@ -142,7 +143,7 @@ def one_of(key: str, value: object, options: Sequence[str]) -> str:
     """One of a few words."""
     if not isinstance(value, str) or value not in options:
         allowed = f"{', '.join(options[:-1])} or {options[-1]}"
-        raise ValueError(f"{key} = {shown(value)}: must be {allowed}")
+        raise refused(key, value, f"must be {allowed}")
     return value
 
 
@@ -157,14 +158,14 @@ def named(key: str, value: Name, options: Iterable[str]) -> Name:
 def text(key: str, value: object) -> str:
     """A piece of text of any kind."""
     if not isinstance(value, str):
-        raise ValueError(f"{key} = {shown(value)}: must be text")
+        raise refused(key, value, "must be text")
     return value
 
 
 def mapping(key: str, value: object, what: str = "a mapping") -> Mapping[Any, Any]:
     """A table of values by name."""
     if not isinstance(value, Mapping):
-        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+        raise refused(key, value, f"must be {what}")
     return value
 
 
@@ -177,7 +178,7 @@ def file_path(key: str, value: object) -> Path:
         if b"\0" in os.fsencode(path):
             raise ValueError
     except (TypeError, ValueError):  # a path of bytes, or characters that no file name has
-        raise ValueError(f"{key} = {shown(value)}: is not the name of a file") from None
+        raise refused(key, value, "is not the name of a file") from None
     return path
 
 
@@ -185,7 +186,7 @@ def pair(key: str, value: object, what: str = "a pair") -> tuple[Any, Any]:
     """Two values in an order."""
     is_row = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
     if not is_row or len(value) != 2:  # type: ignore[arg-type]
-        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+        raise refused(key, value, f"must be {what}")
     return value[0], value[1]  # type: ignore[index]
 
 
@@ -200,14 +201,12 @@ def array(key: str, value: object) -> NDArray[np.float64]:
     """Finite real numbers as an array of any shape."""
     values = as_array(key, value)
     if values.dtype.kind not in "iuf":
-        raise ValueError(f"{key} = {shown(value)}: must be a number or an array of numbers")
-    wrong = ~np.isfinite(values)
-    if wrong.any():
-        raise ValueError(f"{first_of(key, values, wrong)}: must be finite")
+        raise refused(key, value, "must be a number or an array of numbers")
+    refuse_where(~np.isfinite(values), key, values, "must be finite")
     with np.errstate(over="ignore"):
         found = values.astype(np.float64)
-    if values.dtype.itemsize > 8 and not np.isfinite(found).all():
-        raise ValueError(f"{first_of(key, values, ~np.isfinite(found))}: is too large")
+    if values.dtype.itemsize > 8:
+        refuse_where(~np.isfinite(found), key, values, "is too large")
     return found
 
 
@@ -215,7 +214,7 @@ def as_array(key: str, value: object) -> NDArray[Any]:
     """An array of whatever it is, of objects where it is no array."""
     _refuse_too_large(key, value)
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise ValueError(f"{key} = {shown(value)}: must have no masked values")
+        raise refused(key, value, "must have no masked values")
     try:
         return np.asarray(value)
     except Exception:  # rows of different lengths, or an object that says that it is an array
@@ -233,7 +232,7 @@ def _refuse_too_large(key: str, value: object) -> None:
         except Exception:  # refused as what it is, no array
             size = 0
     if size > MOST_IN_ARRAY:
-        raise ValueError(f"{key} = {shown(value)}: has more than {MOST_IN_ARRAY} values")
+        raise refused(key, value, f"has more than {MOST_IN_ARRAY} values")
 
 
 def _size(value: object) -> int:
@@ -245,11 +244,14 @@ def _size(value: object) -> int:
     return len(value) if isinstance(value, Sized) else 0
 
 
-def first_of(key: str, values: NDArray[Any], wrong: NDArray[np.bool_]) -> str:
-    """The first of the wrong values and its place: ``key[3] = -1``."""
-    place = tuple(map(int, np.argwhere(wrong)[0]))
-    index = f"[{', '.join(map(str, place))}]" if place else ""
-    return f"{key}{index} = {values[place]:g}"
+def refuse_where(
+    wrong: NDArray[np.bool_], key: str, values: NDArray[Any], allowed: str, unit: str = ""
+) -> None:
+    """Refuses the first of the wrong values, which it names with its place: ``key[3] = -1``."""
+    if wrong.any():
+        place = tuple(map(int, np.argwhere(wrong)[0]))
+        index = f"[{', '.join(map(str, place))}]" if place else ""
+        raise InputError(f"{key}{index}", f"{values[place]:g}{unit}", allowed)
 
 
 def is_list(value: object) -> TypeGuard[Iterable[object]]:
@@ -261,15 +263,15 @@ def is_list(value: object) -> TypeGuard[Iterable[object]]:
 def items(key: str, value: object, what: str = "a list") -> list[Any]:
     """The values of a list, or of what else is gone through in an order and has an end."""
     if not is_list(value):
-        raise ValueError(f"{key} = {shown(value)}: must be {what}")
+        raise refused(key, value, f"must be {what}")
     try:
         long = isinstance(value, Sized) and len(value) > MOST_LISTED
         found = [] if long else [*islice(value, MOST_LISTED + 1)]
     except Exception as error:
-        said = f"{key} = {shown(value)}: must be {what}; it cannot be gone through"
-        raise ValueError(f"{said}: {error}") from error
+        said = f"must be {what}; it cannot be gone through: {error}"
+        raise refused(key, value, said) from error
     if long or len(found) > MOST_LISTED:
-        raise ValueError(f"{key} = {shown(value)}: must have at most {MOST_LISTED} values")
+        raise refused(key, value, f"must have at most {MOST_LISTED} values")
     return found
 
 

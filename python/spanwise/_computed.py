@@ -12,6 +12,7 @@ from spanwise import _core
 from spanwise._core import __version__
 from spanwise._value import frozen, same
 from spanwise.bridge import Bridge
+from spanwise.errors import InputError
 from spanwise.traffic import Passage
 
 Array: TypeAlias = NDArray[np.float64]
@@ -63,9 +64,11 @@ class Computed:
     def __setstate__(self, state: dict[str, Any]) -> None:
         made_by = state.pop("version")
         if made_by != __version__:
-            raise ValueError(
-                f"version = {made_by}: the run was kept by another version of spanwise than "
-                f"this, {__version__}; compute it again"
+            raise InputError(
+                "version",
+                made_by,
+                f"the run was kept by another version of spanwise than this, {__version__}; "
+                "compute it again",
             )
         self.__dict__.update(state, _histories={})
 

@@ -17,6 +17,7 @@ from spanwise._rows import Rows
 from spanwise._value import same
 from spanwise._variation import Factors
 from spanwise.ensembles import Ensemble
+from spanwise.errors import InputError
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -59,7 +60,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
         if not isinstance(each, Ensemble):
             raise TypeError(f"ensembles[{i}] = {shown(each)}: must be an Ensemble")
     if not given:
-        raise ValueError("ensembles = []: must be one or more")
+        raise InputError("ensembles", "[]", "must be one or more")
     order = sorted(range(len(given)), key=lambda i: given[i].first)
     for before, i in pairwise(order):
         _check_alike(given[order[0]], order[0], given[i], i)
@@ -76,14 +77,18 @@ def _check_next(before: Ensemble, number: int, part: Ensemble, i: int) -> None:
     end = before.first + before.samples
     if part.first < end:
         last = min(end, part.first + part.samples) - 1
-        raise ValueError(
-            f"ensembles[{i}]: samples {part.first} to {last} are in ensembles[{number}] too"
+        raise InputError(
+            f"ensembles[{i}]",
+            None,
+            f"samples {part.first} to {last} are in ensembles[{number}] too",
         )
     if part.first > end:
-        raise ValueError(
-            f"ensembles[{i}] = samples from {part.first}: samples {end} to {part.first - 1} are "
-            f"missing before it; compute them with first={end}, samples={part.first - end}, or put "
-            "the tables of parts with gaps together, pandas.concat of their to_pandas()"
+        raise InputError(
+            f"ensembles[{i}]",
+            f"samples from {part.first}",
+            f"samples {end} to {part.first - 1} are missing before it; compute them with "
+            f"first={end}, samples={part.first - end}, or put the tables of parts with gaps "
+            "together, pandas.concat of their to_pandas()",
         )
 
 
@@ -92,23 +97,26 @@ def _check_alike(one: Ensemble, number: int, part: Ensemble, i: int) -> None:
     mine, others = one._plan, part._plan
     for name, what in (("bridge", "bridge"), ("events", "vehicles"), ("quantities", "quantities")):
         if not same(getattr(mine, name), getattr(others, name)):
-            raise ValueError(f"ensembles[{i}]: {what}: must be as in ensembles[{number}]")
+            raise InputError(f"ensembles[{i}]", None, f"{what}: must be as in ensembles[{number}]")
     ours, theirs = mine.settings, others.settings
     for key in dict.fromkeys((*ours, *theirs)):
         if key not in BY_SAMPLE and not same(ours.get(key), theirs.get(key)):
-            raise ValueError(
-                f"ensembles[{i}]: {key} = {shown(theirs.get(key))}: must be as in "
-                f"ensembles[{number}], {shown(ours.get(key))}"
+            raise InputError(
+                f"ensembles[{i}]",
+                None,
+                f"{key} = {shown(theirs.get(key))}: must be as in "
+                f"ensembles[{number}], {shown(ours.get(key))}",
             )
     widths = [{each.name: each.values.shape[1] for each in plan.factors} for plan in (mine, others)]
     if widths[0] != widths[1]:
         names = ", ".join(f"{name} ({width})" for name, width in widths[1].items()) or "none"
-        raise ValueError(
-            f"ensembles[{i}]: factors = {names}: must be the same with as many parts as in "
-            f"ensembles[{number}]"
+        raise InputError(
+            f"ensembles[{i}]",
+            None,
+            f"factors = {names}: must be the same with as many parts as in ensembles[{number}]",
         )
     if [*one._rows.columns.items()] != [*part._rows.columns.items()]:
-        raise ValueError(f"ensembles[{i}]: is of another version than ensembles[{number}]")
+        raise InputError(f"ensembles[{i}]", None, f"is of another version than ensembles[{number}]")
 
 
 def _joined(plans: Sequence[Plan]) -> Plan:

@@ -12,6 +12,7 @@ from spanwise._warnings import DampingWarning, warn
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping, damping_of, plain_damping, resolved
+from spanwise.errors import InputError
 from spanwise.traffic import Drive, drive_of
 
 Recovery: TypeAlias = Literal["force-summation", "force-summation-by-rates", "superposition"]
@@ -132,7 +133,7 @@ def masked(mask: object) -> float:
     """The part of the largest static value below which there are no impact factors."""
     part = number("mask", mask)
     if not 0.0 <= part < 1.0:
-        raise ValueError(
-            f"mask = {part:g}: must be a fraction of the largest static value, from 0 to below 1"
+        raise InputError(
+            "mask", f"{part:g}", "must be a fraction of the largest static value, from 0 to below 1"
         )
     return part

@@ -21,6 +21,7 @@ from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._rows import Rows
 from spanwise.damping import in_words
 from spanwise.ensembles import Ensemble
+from spanwise.errors import InputError
 from spanwise.quantities import parts
 from spanwise.roads import Road
 from spanwise.schema import Reading, bridge_of, event_table, events_of
@@ -103,9 +104,11 @@ def read_npz(path: Path) -> Ensemble:
         with np.load(path, allow_pickle=False) as archive:
             return _read(archive)
     except KeyError as error:
-        raise ValueError(f"{path}: is not the archive of an ensemble: {error.args[0]}") from error
+        raise InputError(
+            path, None, f"is not the archive of an ensemble: {error.args[0]}"
+        ) from error
     except (ValueError, TypeError, EOFError, BadZipFile, MemoryError) as error:
-        raise ValueError(f"{path}: is not the archive of an ensemble: {error}") from error
+        raise InputError(path, None, f"is not the archive of an ensemble: {error}") from error
 
 
 def _read(archive: Any) -> Ensemble:
@@ -134,7 +137,7 @@ def _read(archive: Any) -> Ensemble:
         **layout,
     )
     if rows.hash != str(archive["hash"]):
-        raise ValueError(f"hash = {archive['hash']}: is not that of its samples, {rows.hash}")
+        raise InputError("hash", archive["hash"], f"is not that of its samples, {rows.hash}")
     return Ensemble(plan, rows)
 
 
@@ -163,7 +166,7 @@ def _places(
 def _of_shape(archive: Any, name: str, shape: tuple[int, ...]) -> Any:
     values = archive[name]
     if values.shape != shape:
-        raise ValueError(f"{name} = shape {values.shape}: must be {shape}")
+        raise InputError(name, f"shape {values.shape}", f"must be {shape}")
     return values
 
 

@@ -13,6 +13,7 @@ from spanwise._checks import choice
 from spanwise._door import require
 from spanwise._files import write_files
 from spanwise.ensembles import By, Ensemble
+from spanwise.errors import InputError
 from spanwise.extremes import largest_of_each
 from spanwise.quantities import Response, factors
 
@@ -41,7 +42,7 @@ def frame(ensemble: Ensemble, by: By) -> pd.DataFrame:
         return table
     there = [each for each in ensemble.responses if each.axis == by]
     if not there:
-        raise ValueError(f'by = "{by}": this ensemble has {", ".join(ensemble.quantities)}')
+        raise InputError("by", f'"{by}"', f"this ensemble has {', '.join(ensemble.quantities)}")
     x = ensemble.envelope(there[0].name).x
     places = pandas.Index(x.astype(np.int64) if by == "axle" else x, name=by)
     numbers = pandas.Index(ensemble.first + np.arange(ensemble.samples), name="sample")

@@ -9,10 +9,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import array, as_array, first_of, shown
+from spanwise._checks import array, as_array, refuse_where, shown
 from spanwise._value import Value
 from spanwise._wheels import Wheels
 from spanwise.crossing import made_by, passages_of
+from spanwise.errors import InputError, refused
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.roads.random import is_random
@@ -63,17 +64,21 @@ def own_road(road: Road, events: Sequence[Event], own_roads: bool) -> tuple[Road
     parts = road._summands
     random = [part for part in parts if isinstance(part, ISO8608)]
     if len(random) > 1:
-        raise ValueError(
-            f"road = {shown(road)}: has {len(random)} random parts, of which one alone can be "
-            "drawn anew for each sample; give one, or own_roads=False to take all as they stand"
+        raise refused(
+            "road",
+            road,
+            f"has {len(random)} random parts, of which one alone can be drawn anew for each "
+            "sample; give one, or own_roads=False to take all as they stand",
         )
     for event in events:
         for k, passage in enumerate(event):
             if passage.road is not None and is_random(passage.road):
-                raise ValueError(
-                    f"vehicles[{k}].road = {shown(passage.road)}: is random, but only the road "
-                    "of the ensemble is drawn anew for each sample; give it as road, or "
-                    "own_roads=False to take all roads as they stand"
+                raise refused(
+                    f"vehicles[{k}].road",
+                    passage.road,
+                    "is random, but only the road of the ensemble is drawn anew for each "
+                    "sample; give it as road, or own_roads=False to take all roads as they "
+                    "stand",
                 )
     if not random:
         return road, None
@@ -84,22 +89,24 @@ def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[
     """The kind of event of every sample; empty if there is one kind."""
     if kind is None:
         if len(events) > 1:
-            raise ValueError(
-                f"kind: missing; give for each of the {samples} samples which of the "
-                f"{len(events)} kinds of event it is, from 0"
+            raise InputError(
+                "kind",
+                None,
+                f"missing; give for each of the {samples} samples which of the {len(events)} "
+                "kinds of event it is, from 0",
             )
         return np.zeros(0, dtype=np.uint32)
     kinds = as_array("kind", kind)
     if kinds.dtype.kind not in "iu" and kinds.size > 0:
-        raise ValueError(f"kind = {shown(kind)}: must be whole numbers, one for each sample")
+        raise refused("kind", kind, "must be whole numbers, one for each sample")
     if kinds.shape != (samples,):
-        raise ValueError(
-            f"kind = shape {kinds.shape}: must be one number for each of the {samples} samples"
+        raise InputError(
+            "kind", f"shape {kinds.shape}", f"must be one number for each of the {samples} samples"
         )
     wrong = np.flatnonzero((kinds < 0) | (kinds >= len(events)))
     if len(wrong) > 0:
         i = int(wrong[0])
-        raise ValueError(f"kind[{i}] = {kinds[i]}: must be from 0 to {len(events) - 1}")
+        raise InputError(f"kind[{i}]", kinds[i], f"must be from 0 to {len(events) - 1}")
     return kinds.astype(np.uint32) if len(events) > 1 else np.zeros(0, dtype=np.uint32)
 
 
@@ -141,10 +148,8 @@ def speeds_of(speed: object, events: Sequence[Event], samples: int) -> Speeds:
     allowed = [(samples,)] if most == 1 else [(samples,), (samples, most)]
     if values.shape not in allowed and values.shape != (samples, 1):
         shapes = " or ".join(map(str, allowed))
-        raise ValueError(f"speed = shape {values.shape}: must be a number or of shape {shapes}")
-    wrong = ~(values > 0.0)
-    if wrong.any():
-        raise ValueError(f"{first_of('speed', values, wrong)}: must be finite and greater than 0")
+        raise InputError("speed", f"shape {values.shape}", f"must be a number or of shape {shapes}")
+    refuse_where(~(values > 0.0), "speed", values, "must be finite and greater than 0")
     return Speeds(values, np.ascontiguousarray(values).ravel())
 
 
@@ -156,18 +161,20 @@ def refuse_unused(speeds: Speeds, events: Sequence[Event], drive: Drive) -> None
     used = _used(events, drive).any(axis=0)
     what = f"{given:g}" if isinstance(given, float) else f"shape {given.shape}"
     if not used.any():
-        raise ValueError(
-            f"speed = {what}: not used, for every passage has a speed of its own; leave one of "
-            "the two out"
+        raise InputError(
+            "speed",
+            what,
+            "not used, for every passage has a speed of its own; leave one of the two out",
         )
     if isinstance(given, float) or given.shape[1:] != used.shape:
         return
     for k in np.flatnonzero(~used):
         if (given[:, k] != given[:1, k]).any():
-            raise ValueError(
-                f"speed[:, {k}] = {given[:, k].min():g} to {given[:, k].max():g}: not used, for "
-                f"vehicles[{k}] has a speed of its own; leave it out there, or give one number in "
-                "this column"
+            raise InputError(
+                f"speed[:, {k}]",
+                f"{given[:, k].min():g} to {given[:, k].max():g}",
+                f"not used, for vehicles[{k}] has a speed of its own; leave it out there, or "
+                "give one number in this column",
             )
 
 

@@ -19,6 +19,7 @@ from spanwise._value import Value
 from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
 from spanwise.crossing import core_passage, cross
+from spanwise.errors import InputError
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.runs import Run
@@ -244,9 +245,11 @@ class Plan(Value):
         if stiffness is None or stiffness == 1.0:
             return self.bridge
         if not self.bridge.described:
-            raise ValueError(
-                f"sample = {sample}: has a bridge {stiffness:g} times as stiff, and one given by "
-                "its flexibility or its modes cannot be made stiffer; give that bridge to cross"
+            raise InputError(
+                "sample",
+                sample,
+                f"has a bridge {stiffness:g} times as stiff, and one given by its flexibility "
+                "or its modes cannot be made stiffer; give that bridge to cross",
             )
         arguments = self.bridge.arguments
         return Bridge(

@@ -23,6 +23,7 @@ from spanwise._plan import Plan
 from spanwise._variation import by_parameter, factors_of, refuse_overdamped
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
+from spanwise.errors import refused
 from spanwise.quantities import RESPONSES, asked, of_bridges, there_are
 from spanwise.roads import Road
 
@@ -39,7 +40,7 @@ def numbers_as_given(key: str, value: ArrayLike) -> ArrayLike:
 def _responses(key: str, given: object) -> list[str]:
     names = [each.name for each in of_bridges()]
     if not isinstance(given, list | tuple) or not given:
-        raise ValueError(f"{key} = {shown(given)}: must be a list of {', '.join(names)}")
+        raise refused(key, given, f"must be a list of {', '.join(names)}")
     return [asked(f"{key}[{i}]", each, names) for i, each in enumerate(given)]
 
 
@@ -149,5 +150,5 @@ def _quantities(bridge: Bridge, wanted: Sequence[str] | None) -> list[str]:
                 if each in known
                 else "this bridge was given without influence lines of it"
             )
-            raise ValueError(f"quantities[{i}] = {shown(each)}: {why}")
+            raise refused(f"quantities[{i}]", each, why)
     return [name for name in there if name in wanted]

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._build import Place, check_known
-from spanwise._checks import array, first_of, shown
+from spanwise._checks import array, refuse_where
 from spanwise._events import Event
 from spanwise._table import listed
 from spanwise._value import Value
+from spanwise.errors import InputError, refused
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
@@ -98,7 +99,9 @@ def factors_of(
     given, absolute = by_parameter("factors", factors), by_parameter("values", values)
     for name in absolute:
         if name in given:
-            raise ValueError(f"values: {name} is among the factors too; give one of the two")
+            raise InputError(
+                "values", None, f"{name} is among the factors too; give one of the two"
+            )
     found = [
         Factors(name, _columns("factors", name, each, samples)) for name, each in given.items()
     ]
@@ -131,10 +134,12 @@ def refuse_overdamped(factors: Sequence[Factors], ratios: Sequence[float], first
             row = int(np.flatnonzero(wrong)[0])
             factor = each.values[row, 0]
             one = len(each.values) == 1
-            raise ValueError(
-                f"factors['bridge_damping']{'' if one else f'[{row}]'} = {factor:g}: makes of "
-                f"damping = {most:g} in {'every sample' if one else f'sample {first + row}'} "
-                f"{factor * most:g} of critical; must stay below 1"
+            raise InputError(
+                f"factors['bridge_damping']{'' if one else f'[{row}]'}",
+                f"{factor:g}",
+                f"makes of damping = {most:g} in "
+                f"{'every sample' if one else f'sample {first + row}'} {factor * most:g} of "
+                "critical; must stay below 1",
             )
 
 
@@ -175,14 +180,14 @@ def _check_width(factors: Factors, events: Sequence[Event]) -> None:
     name, width = factors.name, factors.values.shape[1]
     if width == 1:
         return
-    said = f"factors[{name!r}] = {width} factors a sample"
+    given = f"factors[{name!r}]", f"{width} factors a sample"
     if name in OF_BRIDGES:
-        raise ValueError(f"{said}: must be one for each sample, for there is one bridge")
+        raise InputError(*given, "must be one for each sample, for there is one bridge")
     for number, event in enumerate(events):
         parts = _parts(name, event)
         if width != parts:
             kind = f"kind {number}" if len(events) > 1 else "the event"
-            raise ValueError(f"{said}: {_allowed(name, parts, kind)}")
+            raise InputError(*given, _allowed(name, parts, kind))
 
 
 def _parts(name: str, event: Event) -> int:
@@ -213,7 +218,7 @@ def by_parameter(key: str, table: object) -> dict[str, Array]:
     if table is None:
         return {}
     if not isinstance(table, Mapping):
-        raise ValueError(f"{key} = {shown(table)}: must be a mapping from name to numbers")
+        raise refused(key, table, "must be a mapping from name to numbers")
     allowed = [name for name in ATTRIBUTES if key == "factors" or name not in OF_BRIDGES]
     strange = {name: None for name in table if name not in ATTRIBUTES}
     check_known(strange, allowed, Place(key), "parameter")
@@ -223,18 +228,17 @@ def by_parameter(key: str, table: object) -> dict[str, Array]:
 def _columns(key: str, name: str, values: Array, samples: int) -> Array:
     """Shape (1, 1) for a number, else one row for each sample."""
     if key == "values" and name != "initial_friction":
-        if (wrong := values < 0.0).any():
-            said = first_of(f"values[{name!r}]", values, wrong)
-            raise ValueError(f"{said}: must not be negative")
-        if name in ABOVE_ZERO and (wrong := values == 0.0).any():
-            said = first_of(f"values[{name!r}]", values, wrong)
-            raise ValueError(f"{said}: must be greater than 0")
+        refuse_where(values < 0.0, f"values[{name!r}]", values, "must not be negative")
+        if name in ABOVE_ZERO:
+            refuse_where(values == 0.0, f"values[{name!r}]", values, "must be greater than 0")
     if values.ndim == 0:
         return values.reshape(1, 1)
     if values.ndim > 2 or (values.ndim == 2 and values.shape[1] == 0) or len(values) != samples:
-        raise ValueError(
-            f"{key}[{name!r}] = shape {values.shape}: must be a number, or of shape ({samples},) "
-            f"or ({samples}, parts), one row for each of the {samples} samples"
+        raise InputError(
+            f"{key}[{name!r}]",
+            f"shape {values.shape}",
+            f"must be a number, or of shape ({samples},) or ({samples}, parts), one row for "
+            f"each of the {samples} samples",
         )
     return values.reshape(samples, -1)
 
@@ -249,24 +253,30 @@ def _relative(
 ) -> Array:
     """What multiplies the nominal values to give these; `limits` are factors on those besides."""
     if ATTRIBUTES[name] is None:
-        raise ValueError(f"values[{name!r}]: a bridge has no single value of it; give factors")
+        raise InputError(
+            f"values[{name!r}]", None, "a bridge has no single value of it; give factors"
+        )
     nominal = [np.concatenate([_nominal(name, each.vehicle) for each in event]) for event in events]
     widths = {len(each) for each in nominal}
     if len(widths) > 1:
-        raise ValueError(
-            f"values[{name!r}]: the kinds of event have different numbers of parts, "
-            f"{', '.join(map(str, sorted(widths)))}; give factors, one for each sample"
+        raise InputError(
+            f"values[{name!r}]",
+            None,
+            f"the kinds of event have different numbers of parts, "
+            f"{', '.join(map(str, sorted(widths)))}; give factors, one for each sample",
         )
     (width,) = widths
     if values.shape[1] not in (1, width):
-        raise ValueError(
-            f"values[{name!r}] = {values.shape[1]} values a sample: "
-            f"{_allowed(name, width, 'the event')}"
+        raise InputError(
+            f"values[{name!r}]",
+            f"{values.shape[1]} values a sample",
+            _allowed(name, width, "the event"),
         )
     if width == 1 and name in OF_SUSPENSIONS and _has_springs(events):
-        raise ValueError(
-            f"values[{name!r}]: with a single axle these would vary the springs between bodies "
-            "too; give factors"
+        raise InputError(
+            f"values[{name!r}]",
+            None,
+            "with a single axle these would vary the springs between bodies too; give factors",
         )
     for number, each in enumerate(nominal):
         wrong = np.flatnonzero((each == 0.0) | ~np.isfinite(each))
@@ -274,9 +284,11 @@ def _relative(
             what = ATTRIBUTES[name]
             kind = f" of kind {number}" if len(nominal) > 1 else ""
             lacks = f"no {what}" if each[wrong[0]] == 0.0 else f"an infinite {what}"
-            raise ValueError(
-                f"values[{name!r}]: {_part(name)} {wrong[0] + 1}{kind} has {lacks}, so that "
-                f"{'it' if what == name else name} cannot be set by values"
+            raise InputError(
+                f"values[{name!r}]",
+                None,
+                f"{_part(name)} {wrong[0] + 1}{kind} has {lacks}, so that "
+                f"{'it' if what == name else name} cannot be set by values",
             )
     if len(nominal) == 1:
         relative: Array = values / nominal[0]
@@ -292,9 +304,10 @@ def _relative(
         index = "" if values.shape == (1, 1) else f"[{row}]" if one else f"[{row}, {part}]"
         limit = nominal[int(kinds[row]) if len(nominal) > 1 else 0][part]
         limit *= np.broadcast_to(limits, relative.shape)[row, part]
-        raise ValueError(
-            f"values[{name!r}]{index} = {values[place]:g}: must be within the friction limit of "
-            f"axle {part + 1}, {limit:g} N"
+        raise InputError(
+            f"values[{name!r}]{index}",
+            f"{values[place]:g}",
+            f"must be within the friction limit of axle {part + 1}, {limit:g} N",
         )
     # One number for all parts keeps its place only if there is one part.
     if len(relative) == 1 and width > 1 and samples != 1:
@@ -316,7 +329,9 @@ def _nominal(name: str, vehicle: AnyVehicle) -> Array:
     if name == "body_mass" and isinstance(vehicle, MovingMasses):
         return np.array(vehicle.masses)
     what = "forces" if isinstance(vehicle, ForceTrain) else "masses"
-    raise ValueError(f"values[{name!r}]: a train of {what} has no such thing, only body_mass")
+    raise InputError(
+        f"values[{name!r}]", None, f"a train of {what} has no such thing, only body_mass"
+    )
 
 
 def _has_springs(events: Sequence[Event]) -> bool:
@@ -333,7 +348,9 @@ def _refuse_parts_of_mixed(factors: Sequence[Factors], events: Sequence[Event]) 
     for each in factors:
         by_part = each.name in ("body_mass", "pitch_inertia") and each.values.shape[1] > 1
         if by_part and any(len({*map(is_train, event)}) > 1 for event in events):
-            raise ValueError(
-                f"{each.name}: vehicles and trains in one event have no common parts; give one "
-                "number for each sample"
+            raise InputError(
+                each.name,
+                None,
+                "vehicles and trains in one event have no common parts; give one number for "
+                "each sample",
             )

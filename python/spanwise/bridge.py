@@ -20,12 +20,12 @@ from spanwise._checks import (
     numbers,
     pair,
     pairs,
-    shown,
     word,
 )
 from spanwise._door import view
 from spanwise._keys import alike, suggesting
 from spanwise._value import Value, key, same
+from spanwise.errors import InputError, refused
 from spanwise.layout import (
     AlongBeam,
     AnySupport,
@@ -195,11 +195,13 @@ class Bridge:
             raise ValueError("a bridge needs either spans, or length and supports")
         if spans is not None and (length is not None or supports is not None):
             key = "length" if length is not None else "supports"
-            raise ValueError(
-                f"{key}: not used with spans; give either spans, or length and supports"
+            raise InputError(
+                key, None, "not used with spans; give either spans, or length and supports"
             )
         if stations is not None and stations_per_span is not None:
-            raise ValueError("stations: not used with stations_per_span; give one of the two")
+            raise InputError(
+                "stations", None, "not used with stations_per_span; give one of the two"
+            )
         rigidity, masses = along("EI", EI), along("mass", mass)
         per_span = (
             [10] if stations_per_span is None else counts("stations_per_span", stations_per_span)
@@ -214,7 +216,9 @@ class Bridge:
             total, placed = _core.Bridge.consecutive(numbers("spans", spans), held)
         else:
             if ends is not None:
-                raise ValueError("ends: used with spans only; supports says how the ends are held")
+                raise InputError(
+                    "ends", None, "used with spans only; supports says how the ends are held"
+                )
             total = number("length", length)
             placed = [*map(astuple, supports_of("supports", supports))]
         self._core = _core.Bridge(
@@ -651,8 +655,8 @@ class Bridge:
                 near = np.flatnonzero(np.abs(at - x) <= 1e-9 * self.length)
                 if len(near) == 0:
                     there = ", ".join(f"{a:g}" for a in at)
-                    raise ValueError(
-                        f"settlements position = {x:g} m: must be a support, {there} m"
+                    raise InputError(
+                        "settlements position", f"{x:g} m", f"must be a support, {there} m"
                     )
                 each[near[0]] = number(f"settlements[{x:g}]", value)
         else:
@@ -766,13 +770,13 @@ def _redundant(i: int, value: object) -> tuple[float, float]:
     one = support(key, value)
     if one.rotation != 0.0:
         said = "must be 0; only the deflection is known"
-        raise ValueError(f"{key} rotation = {one.rotation:g}: {said}")
+        raise InputError(f"{key} rotation", f"{one.rotation:g}", said)
     return one.at, one.vertical
 
 
 def _left(side: object) -> bool:
     if not isinstance(side, str) or side not in get_args(Side):
-        raise ValueError(f"side = {shown(side)}: must be left or right")
+        raise refused("side", side, "must be left or right")
     return side == "left"
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 from spanwise._build import Place, Table, within
 from spanwise._case_tables import (
@@ -28,6 +27,7 @@ from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.ensembles import Ensemble
+from spanwise.errors import InputError
 from spanwise.roads import Road, Smooth
 from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
@@ -45,9 +45,6 @@ from spanwise.vehicles import AnyVehicle
 __all__ = ["Case", "CaseError"]
 
 T = TypeVar("T")
-
-#: A vehicle among several, and what of it, in a message about a crossing.
-VEHICLE: Final = re.compile(r"vehicles\[(\d+)\]")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,7 +125,7 @@ class Case(Hashed):
             raise TypeError(f"bridge = {shown(self.bridge)}: must be a Bridge")
         passages = _passages("passages", self.passages)
         if not passages:
-            raise ValueError("passages = []: must have at least one")
+            raise InputError("passages", "[]", "must have at least one")
         if self.road is not None and not isinstance(self.road, Road):
             raise TypeError(f"road = {shown(self.road)}: must be a Road")
         checks_text("source", self.source)
@@ -181,8 +178,10 @@ class Case(Hashed):
         except CaseError as error:
             if looks_like_profile(path):
                 raise CaseError(
-                    f"{path}: is a measured profile, not a case; in a case it is the road:\n"
-                    f'[road]\nkind = "profile"\nfile = {json.dumps(path.as_posix())}'
+                    path,
+                    None,
+                    "is a measured profile, not a case; in a case it is the road:\n"
+                    f'[road]\nkind = "profile"\nfile = {json.dumps(path.as_posix())}',
                 ) from error
             raise
         return replace(case, files=(path, *case.files))
@@ -305,9 +304,9 @@ class Case(Hashed):
         """
         if self.events or (self.sampling and not self.crossing and not overrides):
             needed = "a single crossing takes one event, and a [crossing]"
-            raise CaseError(f"{self.source}: is a case of an ensemble; {needed}")
+            raise CaseError(self.source, None, f"is a case of an ensemble; {needed}")
         given = {"road": self.road, **self.crossing, **overrides}
-        with self._errors(overridden=bool(overrides)):
+        with self._errors({"crossing": self.crossing}, overrides):
             return cross(self.bridge, self.passages, **given)
 
     def ensemble(self, *, samples: int | None = None, **overrides: Any) -> Ensemble:
@@ -323,26 +322,41 @@ class Case(Hashed):
         given = {"road": self.road, **self.crossing, **self.sampling, **overrides}
         given |= {} if samples is None else {"samples": samples}
         if "samples" not in given:
-            raise CaseError(f"{self.source}: missing samples; give them here or in [ensemble]")
+            said = "missing samples; give them here or in [ensemble]"
+            raise CaseError(self.source, None, said)
         events = self.events or (self.passages,)
         # As for a single crossing, the file's speed may be there for nobody.
         if "speed" not in overrides and all(e.speed is not None for event in events for e in event):
             given.pop("speed", None)
         who = [[*event] for event in events]
-        with self._errors(overridden=True):
+        tables = {"crossing": self.crossing}
+        tables = {"ensemble": self.sampling, **tables} if self.sampling else tables
+        with self._errors(tables, overrides):
             return ensemble(self.bridge, who if self.events else who[0], **given)
 
     @contextmanager
-    def _errors(self, *, overridden: bool) -> Iterator[None]:
-        """Puts the place in front of what is said about a crossing."""
-        place = self.source if overridden else f"{self.source}, [crossing]"
+    def _errors(self, tables: Mapping[str, Table], overrides: Table) -> Iterator[None]:
+        """Puts the place in front of what is said of arguments, which these tables may give."""
         try:
             yield
         except ValueError as error:
-            if str(error).startswith("SPANWISE_ISA"):  # which is of no case
+            found = CaseError.of(error)
+            if found.key == "SPANWISE_ISA":  # which is of no case
                 raise
-            said, named = VEHICLE.subn(lambda found: _number(int(found[1])), str(error))
-            raise CaseError(f"{self.source if named else place}: {said}") from error
+            key, allowed = self._numbered(found.key), self._numbered(found.allowed)
+            argument = next(iter(found.key.replace("[", " ").split()), "")
+            # What no table gives is missing in the first, unless it could be among the arguments.
+            giving = [name for name, each in tables.items() if argument in each]
+            home = [*giving, *([] if overrides else tables)]
+            in_file = home and key == found.key and argument not in overrides
+            place = f"{self.source}, {TABLES[home[0]]}" if in_file else self.source
+            raise CaseError(key, found.value, allowed).within(place) from error
+
+    def _numbered(self, said: str) -> str:
+        """The same with vehicles called as their tables are."""
+        for k in range(len(self.passages)):
+            said = said.replace(f"vehicles[{k}]", _number(k))
+        return said
 
 
 def _number(vehicle: int) -> str:

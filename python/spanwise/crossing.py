@@ -18,6 +18,7 @@ from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping
+from spanwise.errors import InputError
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
 from spanwise.traffic import Drive, Passage, Speeds, core_drive, plain_drive
@@ -240,13 +241,13 @@ def check_speed(events: Sequence[tuple[Passage, ...]], speed: float | None, driv
             has_times = isinstance(each.drive or drive, Speeds)
             if has_times and each.speed is not None:
                 key = "speed" if len(passages) == 1 else f"vehicles[{k}].speed"
-                raise ValueError(f"{key} = {each.speed:g}: not used with speeds in time")
+                raise InputError(key, f"{each.speed:g}", "not used with speeds in time")
             timed = timed or has_times
             needed = needed or (each.speed is None and not has_times)
     if speed is None and needed:
-        raise ValueError("speed: missing; give it here or with every passage")
+        raise InputError("speed", None, "missing; give it here or with every passage")
     if speed is not None and not needed and timed:
-        raise ValueError(f"speed = {speed:g}: not used with speeds in time")
+        raise InputError("speed", f"{speed:g}", "not used with speeds in time")
 
 
 def core_passage(

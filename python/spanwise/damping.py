@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise._build import Maker, Place, within
-from spanwise._checks import array, first_of, is_list, items, number, numbers, pair, shown
+from spanwise._checks import array, is_list, items, number, numbers, pair, refuse_where, shown
+from spanwise.errors import InputError
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class Rayleigh:
         for key in ("alpha", "beta"):
             value = number(f"Rayleigh {key}", getattr(self, key))
             if not (np.isfinite(value) and value >= 0.0):
-                raise ValueError(f"Rayleigh {key} = {value}: must be finite and 0 or more")
+                raise InputError(f"Rayleigh {key}", value, "must be finite and 0 or more")
             object.__setattr__(self, key, value)
 
     @classmethod
@@ -56,11 +57,11 @@ class Rayleigh:
         )
         for name, frequency, ratio in (("first", f, z), ("second", g, y)):
             if not (np.isfinite(frequency) and frequency > 0.0):
-                raise ValueError(f"{name} frequency = {frequency}: must be greater than 0")
+                raise InputError(f"{name} frequency", frequency, "must be greater than 0")
             if not 0.0 <= ratio < 1.0:
-                raise ValueError(f"{name} ratio = {ratio}: must be from 0 to below 1")
+                raise InputError(f"{name} ratio", ratio, "must be from 0 to below 1")
         if f == g:
-            raise ValueError(f"second frequency = {g}: must differ from the first")
+            raise InputError("second frequency", g, "must differ from the first")
         w, v = 2.0 * np.pi * f, 2.0 * np.pi * g
         beta = 2.0 * (v * y - w * z) / (v**2 - w**2)
         alpha = 2.0 * w * z - beta * w**2
@@ -75,13 +76,11 @@ class Rayleigh:
     def ratios(self, frequencies: ArrayLike) -> Array:
         """Ratios to critical at frequencies [Hz], of the same shape."""
         given = array("frequencies", frequencies)
-        if (wrong := ~(given > 0.0)).any():
-            raise ValueError(f"{first_of('frequencies', given, wrong)} Hz: must be greater than 0")
+        refuse_where(~(given > 0.0), "frequencies", given, "must be greater than 0", " Hz")
         with np.errstate(over="ignore"):
             omega = 2.0 * np.pi * given
             found: Array = 0.5 * (self.alpha / omega + self.beta * omega)
-        if (wrong := ~np.isfinite(found)).any():
-            raise ValueError(f"{first_of('frequencies', given, wrong)} Hz: is too far from any")
+        refuse_where(~np.isfinite(found), "frequencies", given, "is too far from any", " Hz")
         return found
 
 
@@ -133,9 +132,11 @@ def resolved(
     ratios = damping.ratios(frequencies())
     for mode, ratio in enumerate(ratios, start=1):
         if ratio >= 1.0:
-            raise ValueError(
-                f"damping = {damping}: is {ratio:.3g} of critical in mode {mode}; must be from "
-                "0 to below 1 in every included mode"
+            raise InputError(
+                "damping",
+                damping,
+                f"is {ratio:.3g} of critical in mode {mode}; must be from 0 to below 1 in "
+                "every included mode",
             )
     return ratios.tolist(), None
 

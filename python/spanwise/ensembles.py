@@ -21,6 +21,7 @@ from spanwise._renamed import Renamed, renamed
 from spanwise._rows import Rows
 from spanwise._shown import many
 from spanwise._value import frozen
+from spanwise.errors import InputError, refused
 from spanwise.extremes import Array, SampleExtremes, When, governing
 from spanwise.impact_factors import ByName
 from spanwise.quantities import RESPONSES, Axis, Response, asked, factors, parts, telling
@@ -221,7 +222,7 @@ class Ensemble:
         name = asked("quantity", quantity, parts(whole=True))
         of = parts(whole=True)[name]
         if not self._looks_at(of):
-            raise ValueError(f'quantity = "{name}": {self._not_looked_at}')
+            raise InputError("quantity", f'"{name}"', self._not_looked_at)
         if name not in self._envelopes:
             if of.sided and name == of.name:
                 left, right = map(self.envelope, of.parts)
@@ -410,7 +411,7 @@ class Ensemble:
         elif isinstance(samples, Integral):
             rows = [self._row("samples", samples)]
         else:
-            raise ValueError(f"samples = {shown(samples)}: must be a row or a list of rows")
+            raise refused("samples", samples, "must be a row or a list of rows")
         found: Array | None = None
         tail = max((float(self.tail[row]) for row in rows), default=0.0)
         for i, row in enumerate(rows):
@@ -418,15 +419,19 @@ class Ensemble:
             if found is None:
                 size = len(rows) * values.nbytes
                 if size > MOST_BYTES:
-                    raise ValueError(
-                        f"samples = {len(rows)} samples: their histories would take "
-                        f"{size / 1e9:.1f} GB, more than {MOST_BYTES / 1e9:.1f}; ask for fewer"
+                    raise InputError(
+                        "samples",
+                        f"{len(rows)} samples",
+                        f"their histories would take {size / 1e9:.1f} GB, more than "
+                        f"{MOST_BYTES / 1e9:.1f}; ask for fewer",
                     )
                 found = np.empty((len(rows), *values.shape))
             if values.shape != found.shape[1:]:
-                raise ValueError(
-                    f"samples[{i}] = {row}: has {len(values)} instants, not {found.shape[1]} as "
-                    "those before it; ask for samples of different speeds or steps by themselves"
+                raise InputError(
+                    f"samples[{i}]",
+                    row,
+                    f"has {len(values)} instants, not {found.shape[1]} as those before it; ask "
+                    "for samples of different speeds or steps by themselves",
                 )
             found[i] = values
         return np.empty((0, 0, 0)) if found is None else found
@@ -570,7 +575,7 @@ class SampleFactors(ByName):
         of, factor = factors()[name]
         if not self._ensemble._looks_at(of):
             what = "" if of.name == name else f"{of.name} "
-            raise ValueError(f'quantity = "{name}": {what}{self._ensemble._not_looked_at}')
+            raise InputError("quantity", f'"{name}"', f"{what}{self._ensemble._not_looked_at}")
         return self._ensemble.envelope(of.name).factors(factor.sense, self.mask)
 
     def __call__(self, quantity: str, mask: float | None = None) -> Array:

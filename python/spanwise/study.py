@@ -10,7 +10,7 @@ from typing import TypeAlias
 from numpy.typing import ArrayLike
 
 from spanwise import _core
-from spanwise._checks import count, shown
+from spanwise._checks import count
 from spanwise._conditions import Recovery
 from spanwise._events import core_road, is_simple, speeds_by_kind
 from spanwise._keys import suggesting
@@ -23,6 +23,7 @@ from spanwise.bridge import Bridge
 from spanwise.crossing import core_passage
 from spanwise.damping import Damping
 from spanwise.ensembles import Ensemble
+from spanwise.errors import refused
 from spanwise.quantities import RESPONSES, telling
 from spanwise.roads import Road
 from spanwise.traffic import Drive, Passage, core_drive
@@ -189,7 +190,7 @@ def ensemble(
         column = speeds_by_kind(speeds, events, plan.kinds, plan.samples)
         events = tuple((replace(each, speed=None) if each.speed else each,) for (each,) in events)
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
-        raise ValueError(f"progress = {shown(progress)}: must be callable, or True for a line")
+        raise refused("progress", progress, "must be callable, or True for a line")
     if progress is True:
         listener: Bar | Callable[[int, int], object] | None = Bar(sys.stderr)
     else:

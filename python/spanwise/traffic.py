@@ -20,6 +20,7 @@ from spanwise._checks import (
 from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
+from spanwise.errors import InputError, refused
 from spanwise.roads import Road
 from spanwise.vehicles import AnyVehicle
 
@@ -80,19 +81,21 @@ class Speeds(Brief):
     def __post_init__(self) -> None:
         times, speeds = numbers("times", self.times), numbers("speeds", self.speeds)
         if not times or len(times) != len(speeds):
-            raise ValueError(
-                f"speeds = {len(times)} times and {len(speeds)} speeds: give as many speeds as "
-                "times, one or more"
+            raise InputError(
+                "speeds",
+                f"{len(times)} times and {len(speeds)} speeds",
+                "give as many speeds as times, one or more",
             )
         for i, (time, speed) in enumerate(zip(times, speeds, strict=True)):
             finite(f"times[{i}]", time)
             not_negative(f"speeds[{i}]", speed)
             if i == 0 and time < 0.0:
-                raise ValueError(f"times[0] = {time:g} s: must be 0 or more")
+                raise InputError("times[0]", f"{time:g} s", "must be 0 or more")
             if i > 0 and time <= times[i - 1]:
-                raise ValueError(
-                    f"times[{i}] = {time:g} s: must be greater than the time before it, "
-                    f"{times[i - 1]:g} s"
+                raise InputError(
+                    f"times[{i}]",
+                    f"{time:g} s",
+                    f"must be greater than the time before it, {times[i - 1]:g} s",
                 )
         object.__setattr__(self, "times", tuple(times))
         object.__setattr__(self, "speeds", tuple(speeds))
@@ -219,7 +222,7 @@ class Passage:
         if self.drive is not None:
             object.__setattr__(self, "drive", drive_of(self.drive))
         if self.speed is not None and isinstance(self.drive, Speeds):
-            raise ValueError(f"speed = {self.speed:g}: not used with speeds in time")
+            raise InputError("speed", f"{self.speed:g}", "not used with speeds in time")
         object.__setattr__(self, "entry", not_negative("entry", self.entry))
         one_of("direction", self.direction, get_args(Direction))
         if self.lane is not None:
@@ -277,19 +280,19 @@ def convoy(
     if len(gaps) == 1:
         gaps *= max(len(vehicles) - 1, 1)
     if len(vehicles) > 1 and len(gaps) != len(vehicles) - 1:
-        raise ValueError(
-            f"headway = {shown(headway)}: give one, or one for each of the {len(vehicles) - 1} gaps"
+        raise refused(
+            "headway", headway, f"give one, or one for each of the {len(vehicles) - 1} gaps"
         )
     for i, gap in enumerate(gaps):
         if not 0.0 < gap < float("inf"):
-            raise ValueError(f"headway[{i}] = {gap:g} s: must be finite and greater than 0")
+            raise InputError(f"headway[{i}]", f"{gap:g} s", "must be finite and greater than 0")
     passages, at = [], not_negative("entry", entry)
     for i, (vehicle, gap) in enumerate(zip(vehicles, [0.0, *gaps], strict=False)):
         if not isinstance(vehicle, Wheels):
             raise TypeError(f"vehicles[{i}] = {shown(vehicle)}: must be a Vehicle or a train")
         at += gap
         if at == float("inf"):
-            raise ValueError(f"headway[{i - 1}] = {gap:g} s: is too large")
+            raise InputError(f"headway[{i - 1}]", f"{gap:g} s", "is too large")
         passages.append(
             Passage(vehicle=cast("AnyVehicle", vehicle), direction=direction, entry=at, **common)
         )

@@ -7,8 +7,9 @@ from dataclasses import InitVar, dataclass
 from itertools import accumulate
 
 from spanwise import _core
-from spanwise._checks import numbers, shown
+from spanwise._checks import numbers
 from spanwise._wheels import Wheels
+from spanwise.errors import InputError, refused
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -94,20 +95,23 @@ def _positions(
 ) -> list[float]:
     """Positions as given, or with the first at 0 from the spacings."""
     if count == 0:
-        raise ValueError(f"{key} = []: must have at least one value")
+        raise InputError(key, "[]", "must have at least one value")
     given = numbers("positions", positions)
     if spacings is None:
         if not given and count == 1:
             return [0.0]
         if not given:
-            raise ValueError(f"missing spacings, one less than the {count} {key}, or positions")
+            said = f"missing spacings, one less than the {count} {key}, or positions"
+            raise InputError("", None, said)
         return given
     if given:
-        raise ValueError(f"spacings = {shown(spacings)}: not beside positions; give one of the two")
+        raise refused("spacings", spacings, "not beside positions; give one of the two")
     gaps = numbers("spacings", spacings)
     if len(gaps) != count - 1:
-        raise ValueError(f"spacings = {len(gaps)} values: must be one less than the {count} {key}")
+        raise InputError(
+            "spacings", f"{len(gaps)} values", f"must be one less than the {count} {key}"
+        )
     for k, gap in enumerate(gaps):
         if not 0.0 < gap < float("inf"):
-            raise ValueError(f"spacings[{k}] = {gap:g} m: must be finite and greater than 0")
+            raise InputError(f"spacings[{k}]", f"{gap:g} m", "must be finite and greater than 0")
     return [0.0 - x for x in accumulate(gaps, initial=0.0)]

@@ -11,6 +11,7 @@ from spanwise import _core
 from spanwise._checks import count, number, shown
 from spanwise._value import Brief
 from spanwise._wheels import Array, Wheels
+from spanwise.errors import InputError, refused
 
 T = TypeVar("T")
 
@@ -154,7 +155,7 @@ class Body(Brief):
         for name, kind in (("axles", Axle), ("springs", Spring)):
             object.__setattr__(self, name, _all(name, getattr(self, name), kind))
         if self.hinge is not None and not isinstance(self.hinge, Hinge):
-            raise ValueError(f"hinge = {shown(self.hinge)}: must be a Hinge")
+            raise refused("hinge", self.hinge, "must be a Hinge")
 
     @property
     def joints(self) -> tuple[Hinge | Spring, ...]:
@@ -244,10 +245,8 @@ class Vehicle(Wheels):
     def _one_body(self) -> Body:
         missing = [name for name in ("mass", "pitch_inertia") if getattr(self, name) is None]
         if missing and not self.axles:
-            raise ValueError(
-                f"missing {', '.join([*missing, 'axles'])}: give mass, pitch_inertia and axles, "
-                "or bodies"
-            )
+            said = f"missing {', '.join([*missing, 'axles'])}: "
+            raise InputError("", None, said + "give mass, pitch_inertia and axles, or bodies")
         object.__setattr__(self, "axles", _all("axles", self.axles, Axle))
         # What is None is refused with the numbers.
         return Body(
@@ -266,9 +265,7 @@ class Vehicle(Wheels):
             given["axles"] = self.axles
         for name, value in given.items():
             if value is not None:
-                raise ValueError(
-                    f"{name} = {shown(value)}: not beside bodies, which have their own"
-                )
+                raise refused(name, value, "not beside bodies, which have their own")
 
     def __repr__(self) -> str:
         return f"Vehicle({self.total_mass / 1e3:.4g} t, {self._bodies_in_words}{self._row()})"
@@ -301,9 +298,10 @@ class Vehicle(Wheels):
     def with_initial_friction(self, *friction: float) -> Vehicle:
         """The same vehicle with these friction forces in the static state [N], one by axle."""
         if len(friction) != len(self.axles):
-            raise ValueError(
-                f"initial_friction = {shown(friction)}: give one force for each of the "
-                f"{len(self.axles)} axles"
+            raise refused(
+                "initial_friction",
+                friction,
+                f"give one force for each of the {len(self.axles)} axles",
             )
         parts = [[*body.axles] for body in self.parts]
         for (b, i), force in zip(self.axle_order, friction, strict=True):
@@ -315,11 +313,11 @@ class Vehicle(Wheels):
 def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:
     name = kind.__name__
     if not isinstance(values, list | tuple):
-        raise ValueError(f"{key} = {shown(values)}: must be a list of {name}")
+        raise refused(key, values, f"must be a list of {name}")
     for k, each in enumerate(values):
         if not isinstance(each, kind):
             article = "an" if name[0] in "AEIOU" else "a"
-            raise ValueError(f"{key}[{k}] = {shown(each)}: must be {article} {name}")
+            raise refused(f"{key}[{k}]", each, f"must be {article} {name}")
     return tuple(values)
 
 
@@ -340,7 +338,7 @@ def _body(body: Body, prefix: str, pitches: bool) -> _core._Body:
     # Of a body that does not pitch any inertia will do.
     inertia: object = body.pitch_inertia
     if inertia is None and pitches:
-        raise ValueError(f"{prefix}pitch_inertia = None: must be a number, for the body pitches")
+        raise InputError(f"{prefix}pitch_inertia", "None", "must be a number, for the body pitches")
     if inertia is None:
         inertia = 1.0
     values = [
@@ -385,9 +383,10 @@ def _friction(of: Axle | Spring, prefix: str) -> _core._Friction:
     initial = number(f"{prefix}initial_friction", of.initial_friction)
     stick, decay = of.stick_stiffness, of.leaf_decay
     if stick is not None and decay is not None:
-        raise ValueError(
-            f"{prefix}stick_stiffness = {shown(stick)}: not beside leaf_decay = {shown(decay)}; "
-            "give one of the two"
+        raise refused(
+            f"{prefix}stick_stiffness",
+            stick,
+            f"not beside leaf_decay = {shown(decay)}; give one of the two",
         )
     if stick is not None:
         stick = number(f"{prefix}stick_stiffness", stick)

@@ -13,8 +13,9 @@ from inspect import signature
 from typing import Any, Final, TypeAlias
 
 from spanwise import _core
-from spanwise._checks import count, number, numbers, shown
+from spanwise._checks import count, number, numbers
 from spanwise._wheels import GRAVITY
+from spanwise.errors import refused
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Vehicle, bodies_of
 
@@ -234,9 +235,7 @@ def _heights(cg_heights: Sequence[float], hinge_height: float) -> tuple[list[flo
     """Of tractor and semi-trailer, and of the hinge between them."""
     heights = numbers("cg_heights", cg_heights)
     if len(heights) != 2:
-        raise ValueError(
-            f"cg_heights = {shown(cg_heights)}: give two, of the tractor and of the semi-trailer"
-        )
+        raise refused("cg_heights", cg_heights, "give two, of the tractor and of the semi-trailer")
     return heights, number("hinge_height", hinge_height)
 
 

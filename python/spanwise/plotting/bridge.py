@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from spanwise._checks import count as whole_number
 from spanwise._checks import finite, named
+from spanwise.errors import InputError
 from spanwise.plotting import symbols
 from spanwise.plotting.style import (
     GREY,
@@ -98,7 +99,7 @@ class BridgePlot:
         bridge = self._bridge
         count = whole_number("count", count)
         if count == 0:
-            raise ValueError("count = 0: must be 1 or more")
+            raise InputError("count", "0", "must be 1 or more")
         modes = bridge.modes(count)
         x = np.linspace(0.0, bridge.length, 401)
         shapes = bridge.mode_shapes(count, x)

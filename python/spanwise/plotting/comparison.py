@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spanwise._checks import choice, counts, mapping, numbers, shown, text
+from spanwise.errors import InputError, refused
 from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
 from spanwise.plotting.style import (
     LINES,
@@ -44,7 +45,7 @@ def compare_impact_factors(
         if not isinstance(each, Run):
             raise TypeError(f"runs[{shown(name)}] = {shown(each)}: must be a Run")
     if not runs:
-        raise ValueError("runs: give at least one run")
+        raise InputError("runs", None, "give at least one run")
     titles = along_bridge()
     choice("factor", factor, titles)
     ax = axes_for(ax)
@@ -84,7 +85,7 @@ def compare_convergence(
     """
     included = counts("modes", modes)
     if not included:
-        raise ValueError("modes = []: give at least one")
+        raise InputError("modes", "[]", "give at least one")
     curves = _curves(errors, len(included))
     text("reference", reference)
     figure = figure_for(figure, 2.9)
@@ -125,10 +126,11 @@ def _curves(errors: object, points: int) -> dict[str, dict[str, list[float]]]:
         }
         for method, error in found[str(quantity)].items():
             if len(error) != points:
-                raise ValueError(
-                    f"{key}[{method!r}] = {len(error)} values: must be one for each of the "
-                    f"{points} numbers of modes"
+                raise InputError(
+                    f"{key}[{method!r}]",
+                    f"{len(error)} values",
+                    f"must be one for each of the {points} numbers of modes",
                 )
     if not any(found.values()):
-        raise ValueError(f"errors = {shown(errors)}: give at least one quantity and method")
+        raise refused("errors", errors, "give at least one quantity and method")
     return found

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import named
+from spanwise.errors import InputError
 from spanwise.plotting.envelope import branches
 from spanwise.plotting.factors import mask_note, plot_masked
 from spanwise.plotting.style import (
@@ -153,14 +154,17 @@ class EnsemblePlot:
         """
         ensemble, of = self._ensemble, response(quantity)
         if of.axis == "axle":
-            raise ValueError(
-                f"quantity = {of.name!r}: is not drawn along the bridge; Ensemble.envelope has "
-                f"them, and plot.impact_factors({of.name!r}) draws their factors"
+            raise InputError(
+                "quantity",
+                f"{of.name!r}",
+                "is not drawn along the bridge; Ensemble.envelope has them, and "
+                f"plot.impact_factors({of.name!r}) draws their factors",
             )
         if of not in ensemble.responses:
-            raise ValueError(
-                f"quantity = {of.name!r}: was not looked at; this ensemble has "
-                f"{', '.join(ensemble.quantities)}"
+            raise InputError(
+                "quantity",
+                f"{of.name!r}",
+                f"was not looked at; this ensemble has {', '.join(ensemble.quantities)}",
             )
         extremes = ensemble.envelope(of.name)
         ax = axes_for(ax)
@@ -206,7 +210,7 @@ def _curves(extremes: SampleExtremes, side: str) -> list[Rows]:
 def _bands(values: Rows) -> tuple[Rows, Rows, Rows, Rows]:
     """Fifth percentile, median, 95th and largest by column, NaN where no sample has a value."""
     if len(values) == 0 or np.isnan(values).all():
-        raise ValueError("samples: none has a value to draw")
+        raise InputError("samples", None, "none has a value to draw")
     there = ~np.isnan(values).all(axis=0)
     found = np.full((4, values.shape[1]), np.nan)
     found[:, there] = np.nanpercentile(values[:, there], [BAND[0], 50.0, BAND[1], 100.0], axis=0)

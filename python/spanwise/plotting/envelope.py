@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise.errors import InputError
 from spanwise.plotting.style import (
     DYNAMIC,
     PALE,
@@ -31,7 +32,7 @@ def envelope_of(run: Run, of: Response) -> Envelope:
     """The envelope, refused if there is nothing in it."""
     envelope = run.envelope(of.name)
     if len(envelope.x) == 0:
-        raise ValueError(f"quantity = {of.name!r}: no support of this bridge holds the rotation")
+        raise InputError("quantity", f"{of.name!r}", "no support of this bridge holds the rotation")
     return envelope
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise._checks import choice, finite
+from spanwise.errors import InputError
 from spanwise.plotting.envelope import envelope_of
 from spanwise.plotting.style import LIFTED, metres
 
@@ -42,8 +43,10 @@ def column(run: Run, of: Response, at: float | None, side: Side | None) -> tuple
         nearest = envelope.x[index]
         if not abs(nearest - at) <= 1e-6 * run.bridge.length:
             hint = "; cross(..., sections=[...]) chooses others" if of.axis == "section" else ""
-            raise ValueError(
-                f"at = {at!r}: the run has no {of.name} there, the nearest is at {nearest:g}{hint}"
+            raise InputError(
+                "at",
+                f"{at!r}",
+                f"the run has no {of.name} there, the nearest is at {nearest:g}{hint}",
             )
     if of.axis == "axle":
         loads: Array = getattr(run, of.name)[:, index]

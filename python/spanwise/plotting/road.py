@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spanwise._checks import number
+from spanwise.errors import InputError
 from spanwise.plotting.style import (
     GREY,
     HEIGHT,
@@ -148,8 +149,8 @@ class RoadPlot:
         first = first if start is None else number("start", start)
         last = last if end is None else number("end", end)
         if not -np.inf < first < last < np.inf:
-            raise ValueError(
-                f"end = {last:g} m: must be finite and greater than start, {first:g} m"
+            raise InputError(
+                "end", f"{last:g} m", f"must be finite and greater than start, {first:g} m"
             )
         return first, last
 

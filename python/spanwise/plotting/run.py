@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import count, finite
+from spanwise.errors import InputError
 from spanwise.plotting.bridge import draw_bridge
 from spanwise.plotting.envelope import draw_bars, draw_curves
 from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
@@ -77,7 +78,7 @@ class RunPlot:
         """
         run = self._run
         if front_axle is not None and len(run.passages) > 1:
-            raise ValueError(f"front_axle = {front_axle!r}: of several vehicles give the time")
+            raise InputError("front_axle", f"{front_axle!r}", "of several vehicles give the time")
         instant = _worst_time(run) if time is None else finite("time", time)
         stands = [
             np.array([np.interp(instant, run.time, x) for x in motion.axle_positions.T])
@@ -232,7 +233,7 @@ class RunPlot:
         run = self._run
         chosen = count("number", number)
         if not 1 <= chosen <= len(run.passages):
-            raise ValueError(f"number = {chosen}: must be 1 to {len(run.passages)}")
+            raise InputError("number", chosen, f"must be 1 to {len(run.passages)}")
         motion = run.vehicles[chosen - 1]
         axles = [k for k, (vehicle, _) in enumerate(run.axles) if vehicle == chosen]
         together = len(axles) <= 2
@@ -302,7 +303,7 @@ def _seen(key: str, value: object) -> float:
     """A place that a drawing can show [m]."""
     place = finite(key, value)
     if abs(place) > FARTHEST:
-        raise ValueError(f"{key} = {place:g} m: is too far from the bridge")
+        raise InputError(key, f"{place:g} m", "is too far from the bridge")
     return place
 
 

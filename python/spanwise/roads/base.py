@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spanwise._checks import array, not_negative, number, shown
+from spanwise._checks import array, not_negative, number
 from spanwise._core import Road as CoreRoad
 from spanwise._door import view
 from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._warnings import PlausibilityWarning, warn
+from spanwise.errors import InputError, refused
 from spanwise.roads import roughness
 from spanwise.roads.roughness import IriSegments
 
@@ -112,8 +113,8 @@ class Road(Brief):
             return self._times(times) if times > 0.0 else Smooth()
         except (ValueError, OverflowError):
             # Elevations that overflow, in the words of what they are made of.
-            raise ValueError(
-                f"factor = {times:g}: is too large or too small for this road"
+            raise InputError(
+                "factor", f"{times:g}", "is too large or too small for this road"
             ) from None
 
     __rmul__ = __mul__
@@ -378,10 +379,10 @@ class Sum(Road):
 
     def _made(self) -> CoreRoad:
         if not isinstance(self.parts, list | tuple):
-            raise ValueError(f"parts = {shown(self.parts)}: must be a list of roads")
+            raise refused("parts", self.parts, "must be a list of roads")
         for k, part in enumerate(self.parts):
             if not isinstance(part, Road):
-                raise ValueError(f"parts[{k}] = {shown(part)}: must be a road")
+                raise refused(f"parts[{k}]", part, "must be a road")
         self._set(parts=tuple(self.parts))
         return CoreRoad.sum([part._core for part in self.parts])
 

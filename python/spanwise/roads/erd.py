@@ -11,6 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from spanwise.errors import InputError
+
 #: How the first line begins.
 MARK: Final = "ERDFILEV"
 
@@ -60,16 +62,18 @@ def header_of(lines: list[str]) -> Header:
     """
     end = next((k for k, line in enumerate(lines[:LONGEST]) if line.strip() == "END"), None)
     if end is None:
-        raise ValueError(f"line {min(len(lines), LONGEST)}: the header has no line END before")
+        raise InputError(
+            f"line {min(len(lines), LONGEST)}", None, "the header has no line END before"
+        )
     given = [each.strip() for each in lines[1].split(",")]
     try:
         channels, samples, step = int(given[0]), int(given[1]), float(given[5])
     except (IndexError, ValueError):
         allowed = "must be the numbers of channels, samples, records and bytes, the kind, the step"
-        raise ValueError(f"line 2: {lines[1].strip()!r}: {allowed}") from None
+        raise InputError("line 2", None, f"{lines[1].strip()!r}: {allowed}") from None
     if channels < 1 or not step >= 0.0:
         allowed = "must have channels and a step that is not negative"
-        raise ValueError(f"line 2: {lines[1].strip()!r}: {allowed}")
+        raise InputError("line 2", None, f"{lines[1].strip()!r}: {allowed}")
     said: dict[str, str] = {}
     for line in lines[2:end]:
         # Of keywords that come again, such as TITLE, the first.
@@ -93,7 +97,7 @@ def _start(text: str) -> float:
     try:
         return float(text.strip() or 0.0)
     except ValueError:
-        raise ValueError(f"XSTART {text.strip()!r}: must be a number") from None
+        raise InputError(f"XSTART {text.strip()!r}", None, "must be a number") from None
 
 
 def _fields(text: str, width: int, channels: int) -> list[str]:

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from spanwise import _core
 from spanwise._checks import number
+from spanwise.errors import InputError
 from spanwise.roads._doubts import FLAT, HIGH, LONG, STEEPEST, WIDE, doubts_of_metres
 from spanwise.roads.base import CONTACT_PATCH, Road
 
@@ -40,7 +41,7 @@ class _Feature(Road):
 def _finite(key: str, value: float) -> float:
     """A number that the core knows by another name."""
     if not isfinite(value):
-        raise ValueError(f"{key} = {value}: must be a finite number")
+        raise InputError(key, value, "must be a finite number")
     return value
 
 
@@ -206,7 +207,7 @@ class Joint(_Feature):
 
     def _made(self) -> _core.Road:
         if not 0.0 < self.gap < float("inf"):
-            raise ValueError(f"gap = {self.gap}: must be finite and greater than 0")
+            raise InputError("gap", self.gap, "must be finite and greater than 0")
         depth = _finite("depth", self.depth)
         return _core.Road.plateau(self.at, self.gap, -depth, 0.0, self.contact_patch)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise import _core
-from spanwise._checks import as_array, choice, file_path, finite, flag, number, shown
+from spanwise._checks import as_array, choice, file_path, finite, flag, number
 from spanwise._keys import suggesting
 from spanwise._renamed import renamed
+from spanwise.errors import InputError, refused
 from spanwise.roads._doubts import doubts
 from spanwise.roads.base import CONTACT_PATCH, Road
 from spanwise.roads.reading import read_points
@@ -221,8 +221,8 @@ class Profile(Road):
             x = x + (offset - x[0])
         try:
             return cls(x, elevations, detrend=detrend, contact_patch=contact_patch, max_gap=max_gap)
-        except ValueError as error:
-            raise ValueError(_in_file(str(error), path, x, elevations, lines)) from None
+        except InputError as error:
+            raise _in_file(error, path, x, elevations, lines) from None
 
     @classmethod
     def read_csv(cls, path: str | Path, **options: Any) -> Profile:
@@ -254,7 +254,7 @@ def _column(key: str, value: ArrayLike) -> Array:
     """Numbers in a row that cannot be changed; whether they are finite is checked one by one."""
     given = as_array(key, value)
     if given.dtype.kind not in "iuf" or given.ndim != 1:
-        raise ValueError(f"{key} = {shown(value)}: must be a list of numbers")
+        raise refused(key, value, "must be a list of numbers")
     with np.errstate(over="ignore"):
         values = np.array(given, dtype=np.float64)
     values.setflags(write=False)
@@ -273,20 +273,21 @@ def _merged(x: Array, elevations: Array, lines: Array, kept: str) -> tuple[Array
     return x[one], elevations[one], lines[one]
 
 
-def _in_file(message: str, path: Path, x: Array, elevations: Array, lines: Array) -> str:
+def _in_file(
+    error: InputError, path: Path, x: Array, elevations: Array, lines: Array
+) -> InputError:
     """What is wrong with a profile, with the line of the file and what may mend it."""
-    found = re.match(r"(x|elevations)(?:\[(\d+)\])? = ", message)
-    if found is None:
-        return message
-    if found[2] is None:
-        return f"{path}: {message}"
-    point = int(found[2])
-    where = f"{path}, line {lines[point]:.0f}: {message}"
-    if found[1] == "elevations" and np.isnan(elevations[point]):
-        return f"{where}; missing = nan leaves such points out"
-    if found[1] == "x" and point > 0 and x[point] == x[point - 1]:
-        takes = "takes the mean there, 'first' or 'last' one elevation"
-        return f"{where}; duplicates = 'mean' {takes}"
-    if found[1] == "x" and point > 0 and x[point] < x[point - 1]:
-        return f"{where}; sort = true brings the points into the order of x"
-    return where
+    name, bracket, place = error.key.partition("[")
+    if name not in ("x", "elevations"):
+        return error
+    if not bracket:
+        return error.within(str(path))
+    point, cure = int(place.removesuffix("]")), ""
+    if name == "elevations" and np.isnan(elevations[point]):
+        cure = "; missing = nan leaves such points out"
+    if name == "x" and point > 0 and x[point] == x[point - 1]:
+        cure = "; duplicates = 'mean' takes the mean there, 'first' or 'last' one elevation"
+    if name == "x" and point > 0 and x[point] < x[point - 1]:
+        cure = "; sort = true brings the points into the order of x"
+    found = InputError(error.key, error.value, error.allowed + cure)
+    return found.within(f"{path}, line {lines[point]:.0f}")

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Final
 
 from spanwise import _core
 from spanwise._checks import choice, count, number, numbers, positive, shown
+from spanwise.errors import InputError, refused
 from spanwise.roads._doubts import doubts_of_roughness
 from spanwise.roads.base import CONTACT_PATCH, Road, Sum
 from spanwise.roads.roughness import CLASSES
@@ -99,7 +100,7 @@ class ISO8608(Road):
     def _made(self) -> _core.Road:
         band = numbers("band", self.band)
         if len(band) != 2:
-            raise ValueError(f"band = {shown(self.band)}: must be two wave numbers")
+            raise refused("band", self.band, "must be two wave numbers")
         self._set(
             G=self._roughness(),
             waviness=number("waviness", self.waviness),
@@ -128,17 +129,17 @@ class ISO8608(Road):
         given = _optional("G", self.G)
         if self.road_class is None:
             if given is None:
-                raise ValueError("class, G: give one of the two")
+                raise InputError("class, G", None, "give one of the two")
             return given
         try:
             letter = choice("class", self.road_class, CLASSES)
-        except ValueError as error:
+        except InputError as error:
             given_class: object = self.road_class
             words = given_class.lower() if isinstance(given_class, str) else ""
             meant = f"; {words} is class {NAMED[words]}" if words in NAMED else ""
-            raise ValueError(f"{error}{meant}") from None
+            raise InputError(error.key, error.value, error.allowed + meant) from None
         if given is not None and given != CLASSES[letter]:
-            raise ValueError(f"G = {shown(given)}: not used with class = {shown(letter)}")
+            raise refused("G", given, f"not used with class = {shown(letter)}")
         return CLASSES[letter]
 
     def _times(self, factor: float) -> Road:
@@ -217,13 +218,13 @@ def from_iri(iri: float, **options: Any) -> ISO8608:
     """
     value = number("iri", iri)
     if not 0.0 < value < float("inf"):
-        raise ValueError(f"iri = {shown(iri)}: must be finite and greater than 0")
+        raise refused("iri", iri, "must be finite and greater than 0")
     if "waviness" in options:
-        raise ValueError(f"waviness = {shown(options['waviness'])}: not used with iri, it is 2")
+        raise refused("waviness", options["waviness"], "not used with iri, it is 2")
     try:
         roughness = positive("iri", (value / IRI_FACTOR) ** 2 * 1e-6)
     except (ValueError, OverflowError):
-        raise ValueError(f"iri = {shown(iri)}: is of no road") from None
+        raise refused("iri", iri, "is of no road") from None
     return ISO8608(G=roughness, **options)
 
 

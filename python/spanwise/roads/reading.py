@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from spanwise._checks import items, number, numbers, positive, shown, text
 from spanwise._keys import suggestion
+from spanwise.errors import InputError, refused
 from spanwise.roads import erd
 from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of, without_unit
 from spanwise.roads.sniffing import encoding_of, is_number, value_of
@@ -59,7 +60,7 @@ def read_points(
     gone = None if missing is None else number("missing", missing)
     point = None if decimal is None else text("decimal", decimal)
     if point not in (None, ".", ","):
-        raise ValueError(f"decimal = {shown(decimal)}: must be . or ,")
+        raise refused("decimal", decimal, "must be . or ,")
     content = _content(path)
     try:
         encoding = encoding_of(content)
@@ -70,7 +71,7 @@ def read_points(
         if next(lines(), "").startswith(erd.MARK):
             for key, value in (("spacing", spacing), ("delimiter", mark), ("decimal", point)):
                 if value is not None:
-                    raise ValueError(f"{key} = {shown(value)}: not used with ERD files")
+                    raise refused(key, value, "not used with ERD files")
             sheet = erd_of(lines)
         else:
             _check_columns(wanted, has_x=step is None)
@@ -78,10 +79,12 @@ def read_points(
             sheet.along = None if step is None else (0.0, step, "m")
         return _points(sheet, wanted, factors, gone)
     except (csv.Error, UnicodeError) as error:
-        raise ValueError(f"{path}: not a file of separated values: {error}") from None
+        raise InputError(path, None, f"not a file of separated values: {error}") from None
     except ValueError as error:
-        said = str(error)
-        raise ValueError(f"{path}{',' if said.startswith('line ') else ':'} {said}") from None
+        found = InputError.of(error)
+        if found.key.startswith("line "):
+            raise InputError(f"{path}, {found.key}", found.value, found.allowed) from None
+        raise found.within(str(path)) from None
 
 
 def _content(path: Path) -> bytes:
@@ -89,11 +92,11 @@ def _content(path: Path) -> bytes:
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
-        raise ValueError(f"{path}: is {kind}; a profile is a file of numbers")
+        raise InputError(path, None, f"is {kind}; a profile is a file of numbers")
     with path.open("rb") as file:
         content = file.read(MAX_BYTES + 1) if status.st_size <= MAX_BYTES else None
     if content is None or len(content) > MAX_BYTES:
-        raise ValueError(f"{path}: is too large; a profile has at most {MAX_BYTES} bytes")
+        raise InputError(path, None, f"is too large; a profile has at most {MAX_BYTES} bytes")
     return content
 
 
@@ -171,18 +174,18 @@ def _places(sheet: Sheet, first: Row, wanted: tuple[Column, ...] | None) -> list
         if sheet.along is None:
             if held == 1:
                 allowed = "if it has elevations, give their spacing"
-                raise ValueError(f"{where}: 1 column; {allowed}")
+                raise InputError(where, None, f"1 column; {allowed}")
             if len(sheet.names) > 2 and held > 2:
                 named = f"{held} columns: {', '.join(sheet.names)}"
                 allowed = "give that of x and one elevation in columns"
-                raise ValueError(f"{where}: {named}; {allowed}, or several for their mean")
+                raise InputError(where, None, f"{named}; {allowed}, or several for their mean")
             wanted = (0, 1)
         elif held == 1:
             wanted = (0,)
         else:
             named = f": {', '.join(sheet.names)}" if sheet.names else ""
             allowed = "give one in columns, or several for their mean"
-            raise ValueError(f"{where}: {held} columns of elevations{named}; {allowed}")
+            raise InputError(where, None, f"{held} columns of elevations{named}; {allowed}")
     _check_columns(wanted, has_x=sheet.along is None)
     found = []
     for k, column in enumerate(wanted):
@@ -192,10 +195,10 @@ def _places(sheet: Sheet, first: Row, wanted: tuple[Column, ...] | None) -> list
         elif (place := _place_of(column, sheet.names)) is not None:
             found.append(place)
         elif not sheet.names:
-            raise ValueError(f"{where}: {key}: the file has no line of names; give a number")
+            raise InputError(where, None, f"{key}: the file has no line of names; give a number")
         else:
             allowed = f"must be one of {', '.join(sheet.names)}{suggestion(column, sheet.names)}"
-            raise ValueError(f"{where}: {key}: {allowed}")
+            raise InputError(where, None, f"{key}: {allowed}")
     return found
 
 
@@ -212,15 +215,15 @@ def _number(row: Row, column: int, decimal: str, is_height: bool, missing: float
     if column >= len(cells):
         other = next((each for each in (";", "\t", "|", " ") if each in cells[0]), None)
         hint = "" if other is None else f"; is the delimiter {other!r}?"
-        raise ValueError(
-            f"line {line}: {len(cells)} columns, column {column} (from 0) is missing{hint}"
+        raise InputError(
+            f"line {line}", None, f"{len(cells)} columns, column {column} (from 0) is missing{hint}"
         )
     cell = cells[column]
     if is_height and cell == "":
         if missing is not None and np.isnan(missing):
             return missing
         leaves = "missing = nan leaves such points out"
-        raise ValueError(f"line {line}: column {column} is blank; {leaves}")
+        raise InputError(f"line {line}", None, f"column {column} is blank; {leaves}")
     value = value_of(cell, decimal)
     if value is None:
         hint = ""
@@ -228,7 +231,9 @@ def _number(row: Row, column: int, decimal: str, is_height: bool, missing: float
             hint = f"; is the decimal mark {',' if decimal == '.' else '.'!r}?"
         elif ";" in cell or "\t" in cell:
             hint = f"; is the delimiter {';' if ';' in cell else chr(9)!r}?"
-        raise ValueError(f"line {line}: {shown(cell)} in column {column} is not a number{hint}")
+        raise InputError(
+            f"line {line}", None, f"{shown(cell)} in column {column} is not a number{hint}"
+        )
     return value
 
 
@@ -239,13 +244,13 @@ def _columns(columns: object) -> tuple[Column, ...] | None:
     several = [columns] if isinstance(columns, str | int | np.integer) else columns
     asked = items("columns", several, "names or numbers of columns")
     if not 1 <= len(asked) <= MOST_COLUMNS:
-        raise ValueError(f"columns = {shown(columns)}: must be 1 to {MOST_COLUMNS} columns")
+        raise refused("columns", columns, f"must be 1 to {MOST_COLUMNS} columns")
     found: list[Any] = []
     for k, each in enumerate(asked):
         is_place = isinstance(each, int | np.integer) and not isinstance(each, bool) and each >= 0
         if not (is_place or isinstance(each, str)):
             allowed = "must be a column's name or its number from 0"
-            raise ValueError(f"columns[{k}] = {shown(each)}: {allowed}")
+            raise refused(f"columns[{k}]", each, allowed)
         found.append(int(each) if is_place else each)
     return tuple(found)
 
@@ -255,13 +260,13 @@ def _check_columns(wanted: tuple[Column, ...] | None, *, has_x: bool) -> None:
     if has_x and wanted is not None and len(wanted) < 2:
         allowed = "must be that of x and one elevation or more"
         other = "or give spacing in place of x"
-        raise ValueError(f"columns = {shown(list(wanted))}: {allowed}; {other}")
+        raise refused("columns", list(wanted), f"{allowed}; {other}")
 
 
 def _factors(scale: object) -> tuple[float, float]:
     factors = numbers("scale", scale)
     if len(factors) != 2:
-        raise ValueError(f"scale = {shown(scale)}: must be two factors, of x and elevation")
+        raise refused("scale", scale, "must be two factors, of x and elevation")
     return factors[0], factors[1]
 
 
@@ -271,5 +276,5 @@ def _delimiter(delimiter: object) -> str:
     found = text(key, delimiter)
     found = "\t" if found == r"\t" else found
     if len(found) != 1 or found in '\r\n"':
-        raise ValueError(f"{key} = {shown(delimiter)}: must be one character, or \\t for a tab")
+        raise refused(key, delimiter, "must be one character, or \\t for a tab")
     return found

@@ -13,6 +13,7 @@ from spanwise._checks import number, numbers, shown
 from spanwise._door import require
 from spanwise._table import Table
 from spanwise._value import Value, frozen
+from spanwise.errors import InputError, refused
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,7 +155,7 @@ def _classified(
     G: float, error: float | None = None, band: tuple[float, float] | None = None
 ) -> IsoClass:
     if not 0.0 < G < np.inf:
-        raise ValueError(f"G = {shown(G)}: must be finite and greater than 0")
+        raise refused("G", G, "must be finite and greater than 0")
     lower = 0.0
     for letter, upper in _UPPER.items():
         if upper is None or upper >= G:
@@ -192,14 +193,14 @@ def psd(
     start, end = number("start", start), number("end", end)
     length = end - start
     if not 0.0 < length < np.inf:
-        raise ValueError(f"end = {end:g} m: must be finite and greater than start, {start:g} m")
+        raise InputError("end", f"{end:g} m", f"must be finite and greater than start, {start:g} m")
     road.check_holds(start, end)
     known, finest = road.waves(start, end)
     if spacing is not None:
         spacing = number("spacing", spacing)
         if not length / _MOST <= spacing <= length / 32:
             allowed = f"{length / _MOST:g} to {length / 32:g} m for this section"
-            raise ValueError(f"spacing = {spacing:g} m: must be {allowed}")
+            raise InputError("spacing", f"{spacing:g} m", f"must be {allowed}")
         known = min(known, 0.5 / spacing)
     # As fine as the finest part of the road asks, whatever is asked for, so that no wave is passed
     # over; what is finer still is averaged over each step, whose gain on longer waves is known.
@@ -209,13 +210,13 @@ def psd(
     step = max(step, min(length / _MOST, _SPACING))
     if length > step * _MOST * (1 + 1e-12):
         allowed = f"must be at most {step * _MOST:g} m beyond start, {start:g} m"
-        raise ValueError(f"end = {end:g} m: {allowed}")
+        raise InputError("end", f"{end:g} m", allowed)
     known = min(known, HELD / step)
     is_given = segment is not None
     segment = length / 4 if segment is None else number("segment", segment)
     if not 8 * step <= segment <= length:
         allowed = f"must be {8 * step:g} m, eight samples, to {length:g} m, the section"
-        raise ValueError(f"segment = {segment:g} m: {allowed}")
+        raise InputError("segment", f"{segment:g} m", allowed)
     points = int(segment / step * (1 + 1e-12))
     samples = int(length / step * (1 + 1e-12))
     middles: Array = start + step * (np.arange(samples, dtype=np.float64) + 0.5)
@@ -237,9 +238,9 @@ def psd(
     if not held.any():
         least = 1.0 / known  # the shortest wave that can be told
         if is_given:
-            raise ValueError(f"segment = {segment:g} m: must hold a wave of {least:g} m")
+            raise InputError("segment", f"{segment:g} m", f"must hold a wave of {least:g} m")
         beyond = f"must lie {4.0 * least:g} m or more beyond start, {start:g} m"
-        raise ValueError(f"end = {end:g} m: {beyond}")
+        raise InputError("end", f"{end:g} m", beyond)
     return wave_numbers[held], density[held]
 
 
@@ -248,21 +249,23 @@ def fitted(wave_numbers: Array, density: Array, band: object) -> IsoClass:
     limits = numbers("band", band)
     if len(limits) != 2 or not 0.0 < limits[0] < limits[1] < np.inf:
         allowed = "must be two finite numbers greater than 0, the second the greater"
-        raise ValueError(f"band = {shown(band)}: {allowed}")
+        raise refused("band", band, allowed)
     # Each wave number stands for the width around it; the first is that of one wave per segment.
     width = float(wave_numbers[0])
     lowest = max(limits[0], _LOWEST * width)
     highest = min(limits[1], float(wave_numbers[-1]) + 0.5 * width)
     if not limits[1] >= limits[0] * 2.0**_OCTAVES * (1 - 1e-12):
-        raise ValueError(f"band = {shown(band)}: must span two octaves, a factor of 4")
+        raise refused("band", band, "must span two octaves, a factor of 4")
     if not highest >= lowest * 2.0**_OCTAVES * (1 - 1e-12):
         seen, last = "nothing", float(wave_numbers[-1])
         if last > _LOWEST * width:
             seen = f"only {_LOWEST * width:g} to {last:g} cycle/m"
         blamed = "start, end" if tuple(limits) == ISO_BAND else f"band = {shown(band)}"
-        raise ValueError(
-            f"{blamed}: this section shows {seen}, and two octaves of {limits[0]:g} to "
-            f"{limits[1]:g} cycle/m are needed; take a longer section, or points that are closer"
+        raise InputError(
+            blamed,
+            None,
+            f"this section shows {seen}, and two octaves of {limits[0]:g} to {limits[1]:g} "
+            "cycle/m are needed; take a longer section, or points that are closer",
         )
     inside = (wave_numbers >= lowest) & (wave_numbers <= highest)
     n, levels = wave_numbers[inside], density[inside] * (wave_numbers[inside] / REFERENCE) ** 2
@@ -270,7 +273,7 @@ def fitted(wave_numbers: Array, density: Array, band: object) -> IsoClass:
     found, first = np.unique(octave, return_index=True)
     means = np.add.reduceat(levels, first) / np.diff(np.append(first, len(n)))
     if not means.min() > 0.0:
-        raise ValueError("the road is smooth there: it has no class")
+        raise InputError("", None, "the road is smooth there: it has no class")
     # A partial octave counts by its width.
     weights = np.minimum(1.0, np.log2(highest / lowest) - found)
     logs = np.log(means)

@@ -9,6 +9,7 @@ from itertools import chain, islice
 from typing import Final, TypeAlias
 
 from spanwise._checks import shown
+from spanwise.errors import InputError
 from spanwise.roads import erd
 from spanwise.roads.sniffing import DELIMITERS, decimal_of, delimiter_of, rows_of, value_of
 
@@ -95,9 +96,8 @@ class Sheet:
             unit = self.units[place] if place < len(self.units) else ""
             of = f"column {place} ({self.names[place]})" if place < len(self.names) else "x"
         if self.is_strict and unit and not _is_unit(unit):
-            where = f"line {self.head}: " if self.head else ""
-            allowed = "is not known; give scale"
-            raise ValueError(f"{where}unit {unit!r} of {of}: {allowed}")
+            where = f"line {self.head}" if self.head else ""
+            raise InputError(where, None, f"unit {unit!r} of {of}: is not known; give scale")
         return METRES.get(unit.lower(), 1.0)
 
 
@@ -129,8 +129,10 @@ def table_of(
         (line, cells), _ = lead[-1]
         other = next((each for each in DELIMITERS if any(each in cell for cell in cells)), None)
         hint = "" if other is None else f"; is the delimiter {other!r}?"
-        raise ValueError(
-            f"line {line}: no numbers in {shown(delimiter.join(cells))}, the last line{hint}"
+        raise InputError(
+            f"line {line}",
+            None,
+            f"no numbers in {shown(delimiter.join(cells))}, the last line{hint}",
         )
     points = chain((row for row, _ in lead[head:]), first, rows)
     titles = [row for row, numbers in lead[:head] if numbers == 0]
@@ -239,7 +241,7 @@ def erd_of(lines: Callable[[], Iterator[str]]) -> Sheet:
             pending = pending[whole:]
         if pending:
             held = f"{len(pending)} of {header.channels} channels"
-            raise ValueError(f"line {number}: the last sample has {held}")
+            raise InputError(f"line {number}", None, f"the last sample has {held}")
 
     return Sheet(
         rows(), header.names, header.units, along=along, expected=header.samples, is_strict=True
