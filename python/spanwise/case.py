@@ -319,8 +319,8 @@ class Case(Hashed):
         CaseError, RuntimeError
             As from `run`.
         """
+        overrides |= {} if samples is None else {"samples": samples}
         given = {"road": self.road, **self.crossing, **self.sampling, **overrides}
-        given |= {} if samples is None else {"samples": samples}
         if "samples" not in given:
             said = "missing samples; give them here or in [ensemble]"
             raise CaseError(self.source, None, said)
