@@ -312,7 +312,9 @@ def test_road_of_coarse_points(tmp_path: Path, capsys: pytest.CaptureFixture[str
         assert err.startswith("spanwise: error: road: its points are 2.5 m apart")
 
 
-def test_figures_of_traffic(tmp_path: Path) -> None:
+def test_figures_of_traffic(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Which there are: what is on them is looked at elsewhere.
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda *_, **__: None)
     case = tmp_path / "case.toml"
     bridge, _, crossing = CASE.partition("[vehicle]")
     traffic = '[[traffic]]\nvehicle = { preset = "hs20" }\n'

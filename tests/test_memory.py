@@ -62,7 +62,7 @@ ASKED = [
     ("sw.ISO8608('A').elevation(np.zeros(15 * 10**6))", "InputError x = "),
     ("sw.ensemble(bridge, truck, samples=4, threads=4096, advance=0.1, **given)", ""),
     (
-        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.1, quantities=['moment'], "
+        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.2, quantities=['moment'], "
         "**given); e.to_npz(sys.argv[3])",
         None,
     ),

@@ -736,3 +736,12 @@ def test_refused_soon_and_cheaply(ask: Callable[[], object], parts: tuple[str, .
 def test_a_road_needs_a_kind() -> None:
     with pytest.raises(TypeError, match="all kinds"):
         sw.roads.Road()
+
+
+def test_the_file_of_a_profile_may_lie_deep(tmp_path: Path) -> None:
+    folder = tmp_path / ("deep" * 30)
+    folder.mkdir()
+    file = folder / "road.csv"
+    file.write_text("".join(f"{x},0.0\n" for x in range(20)), encoding="utf-8")
+    road = sw.roads.from_table({"kind": "profile", "file": str(file)})
+    assert road == sw.Profile.read(file)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NoReturn
@@ -175,19 +176,22 @@ def _cross(options: argparse.Namespace) -> str:
     """Computes the crossing, writes the files asked for, and gives the text to print."""
     case = Case.read(options.case, options.settings)
     run = case.run(**_reseeded(options, case))
-    files: list[tuple[Path, Content]] = []
+    files: Iterable[tuple[Path, Content]] = []
     folders = []
     text = run.summary() + "\n"
     if options.json == "-":
         text = json_text(run)
     elif options.json is not None:
-        files.append((Path(options.json), [json_text(run).encode()]))
+        files = [(Path(options.json), [json_text(run).encode()])]
     if options.csv is not None:
         folders.append(options.csv)
-        files += [(options.csv / name, content) for name, content in csv_files(run)]
+        tables = ((options.csv / name, content) for name, content in csv_files(run))
+        files = chain(files, tables)
     if options.plot is not None:
         folders.append(options.plot)
-        files += [(options.plot / name, [content]) for name, content in figure_files(run)]
+        # Drawn when their folder is there.
+        figures = ((options.plot / name, [content]) for name, content in figure_files(run))
+        files = chain(files, figures)
     write_files(files, folders, case.files)
     return text
 

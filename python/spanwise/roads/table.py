@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
 from spanwise._build import Maker, Place, build_kind
-from spanwise._checks import word
+from spanwise._checks import text
 from spanwise.roads.base import Road, Smooth, total
 from spanwise.roads.features import Bump, Camber, Joint, Pothole, Ramp, Step
 from spanwise.roads.profile import Profile
@@ -16,7 +16,7 @@ Table: TypeAlias = Mapping[str, Any]
 
 
 def _from_file(file: str, **options: Any) -> Profile:
-    return Profile.read(word("file", file), **options)
+    return Profile.read(text("file", file), **options)
 
 
 _ROUGHNESS: Final = ("road_class", "G")
