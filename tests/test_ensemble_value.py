@@ -52,6 +52,7 @@ def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
         "modes": 3,
         "damping": 0.02,
         "road": sw.ISO8608("C") + sw.Bump(3.0, 0.5, 0.01),
+        "approach": 20.0,
         "sections": [5.0, 9.0, 18.0, 24.0],
     }
     if name == "side by side":
