@@ -193,7 +193,7 @@ def test_options_are_blamed(
     assert "--threads" in said or f"{path} with ensemble.samples" in said
     monkeypatch.setenv("SPANWISE_ISA", "foo")
     assert main(["ensemble", str(path), "--samples=2"]) == 2
-    assert capsys.readouterr().err.startswith('spanwise: error: SPANWISE_ISA = "foo": ')
+    assert 'spanwise: error: SPANWISE_ISA = "foo": ' in capsys.readouterr().err
 
 
 def test_help_tells_of_what_varies(capsys: pytest.CaptureFixture[str]) -> None:
