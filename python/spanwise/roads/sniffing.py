@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Final
 
 from spanwise._checks import shown
-from spanwise.roads.erd import MARK
+
+#: How an ERD file begins.
+MARK: Final = "ERDFILEV"
 
 #: Delimiters that are looked for; where two serve alike the first is meant. Blanks come in runs.
 DELIMITERS: Final = ("\t", ";", "|", " ", ",")
@@ -18,22 +20,17 @@ DELIMITERS: Final = ("\t", ";", "|", " ", ",")
 #: How much of a file is looked at to tell what it is [bytes].
 _BEGINNING: Final = 2**16
 
-_MARKS: Final = (codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 #: With which DOS ends a text.
 _DOS_END: Final = "\x1a"
-_CONTROL: Final = re.compile(r"[\x00-\x08\x0e-\x1f]")
+_CONTROL: Final = r"[\x00-\x08\x0e-\x1f]"
 
 #: Whole numbers in groups of three, and what separates them beside the other of point and comma.
 _GROUPED: Final = r"[1-9]\d{{0,2}}(?:[{group}'\u2019 \u00a0\u202f]\d{{3}})+"
 _PATTERNS: Final = {
-    decimal: re.compile(
-        rf"([+-]?)(?:(\d+)\+(?=\d{{2,3}}(?!\d)))?"
-        rf"((?:\d+|{_GROUPED.format(group=group)})?(?:{decimal}{digits})?)(e[+-]?\d+)?",
-        re.IGNORECASE,
-    )
-    for decimal, group, digits in ((r"\.", ",", r"\d*"), (",", r"\.", r"\d+"))
+    decimal: rf"([+-]?)(?:(\d+)\+(?=\d{{2,3}}(?!\d)))?"
+    rf"((?:\d+|{_GROUPED.format(group=group)})?(?:[{decimal}]{digits})?)([eE][+-]?\d+)?"
+    for decimal, group, digits in ((".", ",", r"\d*"), (",", ".", r"\d+"))
 }
-_NOT_DIGIT: Final = re.compile(r"\D")
 
 
 def encoding_of(content: bytes) -> str:
@@ -44,7 +41,7 @@ def encoding_of(content: bytes) -> str:
     UnicodeError
         If it is none of them.
     """
-    if content.startswith(_MARKS[1:]):
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         encoding = "utf-16"
     elif b"\0" in content[:2]:  # the first character takes two bytes
         encoding = "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
@@ -55,7 +52,7 @@ def encoding_of(content: bytes) -> str:
         except UnicodeDecodeError:
             encoding = "cp1252"
     text = content.decode(encoding)
-    control = _CONTROL.search(text.rstrip(_DOS_END))
+    control = re.search(_CONTROL, text.rstrip(_DOS_END))
     if control is not None:
         raise UnicodeError(f"it has the character {control[0]!r}")
     return encoding
@@ -79,13 +76,13 @@ def value_of(text: str, decimal: str) -> float | None:
             return None if "_" in text else float(text)
         except ValueError:
             pass
-    found = _PATTERNS["," if decimal == "," else r"\."].fullmatch(text.replace("\u2212", "-"))
+    found = re.fullmatch(_PATTERNS[decimal], text.replace("\u2212", "-"))
     if found is None or not any(map(str.isdigit, found[3])):
         return float(text) if text.lower() in ("nan", "inf", "-inf") else None
     sign, stations, digits, exponent = found.groups("")
     whole, _, fraction = digits.partition(decimal)
     # A station counts in thousands or hundreds, as many digits follow: 1+234.5 or 12+34.5.
-    whole = stations + _NOT_DIGIT.sub("", whole)
+    whole = stations + re.sub(r"\D", "", whole)
     return float(f"{sign}{whole or '0'}.{fraction or '0'}{exponent}")
 
 
