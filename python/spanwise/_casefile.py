@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import stat
-import tomllib
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,7 +16,7 @@ MAX_BYTES: Final = 2**20
 MAX_PARTS: Final = 16
 
 #: A key of more parts than that, bare or quoted, wherever it stands.
-LONG_KEY: Final = re.compile(
+LONG_KEY: Final = (
     r"""(?<![\w.-])(?:PART)(?:[ \t]*+\.[ \t]*+(?:PART)){%d}""".replace(
         "PART", r"""[\w-]++|"[^"\n]*+"|'[^'\n]*+'"""
     )
@@ -25,7 +24,7 @@ LONG_KEY: Final = re.compile(
 )
 
 #: A decimal point with a digit on one side only, which TOML does not allow.
-POINT: Final = re.compile(r"(?<![\w.])(\d+\.(?!\d)|\.\d)")
+POINT: Final = r"(?<![\w.])(\d+\.(?!\d)|\.\d)"
 
 
 class CaseError(InputError):
@@ -61,11 +60,13 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         raise CaseError(
             source, None, f"text has {len(text)} characters; a case has at most {MAX_BYTES}"
         )
-    if long := LONG_KEY.search(text):
+    if long := re.search(LONG_KEY, text):
         line = text.count("\n", 0, long.start()) + 1
         raise CaseError(
             f"{source}, line {line}", None, f"a dotted key has at most {MAX_PARTS} parts"
         )
+    import tomllib
+
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -86,6 +87,6 @@ def _syntax_error(message: str, text: str, source: str) -> CaseError:
     line = int(where[1] or text.rstrip().count("\n") + 1)
     characters = text.split("\n")[line - 1].strip()[:80]
     shown = "".join(each if each.isprintable() else "?" for each in characters)
-    hint = " (TOML wants digits on both sides of a point: 22.0)" if POINT.search(shown) else ""
+    hint = " (TOML wants digits on both sides of a point: 22.0)" if re.search(POINT, shown) else ""
     said = message.replace(where[0], "")
     return CaseError(f"{source}, line {line}", None, f"is not valid TOML: {said}: {shown}{hint}")

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable
 from difflib import SequenceMatcher
 from functools import wraps
-from inspect import signature
 from typing import Any, Final, TypeVar, cast
 
 from spanwise._shown import LONGEST
@@ -17,7 +16,9 @@ T = TypeVar("T")
 def suggesting(target: T) -> T:
     """A function or a class that suggests the nearest keyword for one that it does not have."""
     function: Any = vars(target)["__init__"] if isinstance(target, type) else target
-    known = [*signature(function).parameters]
+    # Not by `inspect`, which takes long for what is done for every class on import.
+    code = getattr(function, "__wrapped__", function).__code__
+    known = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
     name = getattr(target, "__qualname__", "")
 
     @wraps(function)

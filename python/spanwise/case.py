@@ -29,7 +29,6 @@ from spanwise.crossing import cross
 from spanwise.ensembles import Ensemble
 from spanwise.errors import InputError
 from spanwise.roads import Road, Smooth
-from spanwise.roads.sniffing import looks_like_profile
 from spanwise.runs import Run
 from spanwise.schema import (
     Reading,
@@ -176,6 +175,8 @@ class Case(Hashed):
             source, tables = _read(path, settings)
             case = cls._of(tables, source, path.parent)
         except CaseError as error:
+            from spanwise.roads.sniffing import looks_like_profile
+
             if looks_like_profile(path):
                 raise CaseError(
                     path,

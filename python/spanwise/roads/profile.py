@@ -18,9 +18,7 @@ from spanwise._renamed import renamed
 from spanwise.errors import InputError, refused
 from spanwise.roads._doubts import doubts
 from spanwise.roads.base import CONTACT_PATCH, Road
-from spanwise.roads.reading import read_points
 from spanwise.roads.roughness import HELD
-from spanwise.roads.sheet import Column
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -130,7 +128,7 @@ class Profile(Road):
         cls,
         path: str | Path,
         *,
-        columns: Sequence[Column] | Column | None = None,
+        columns: Sequence[int | str] | int | str | None = None,
         spacing: float | None = None,
         start: float | None = None,
         delimiter: str | None = None,
@@ -204,6 +202,8 @@ class Profile(Road):
         ----------
         University of Michigan Transportation Research Institute, "The ERD file specification".
         """
+        from spanwise.roads.reading import read_points
+
         kept = choice("duplicates", duplicates, _DUPLICATES)
         offset = None if start is None else finite("start", start)
         is_sorted = flag("sort", sort)
