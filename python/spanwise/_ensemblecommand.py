@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from spanwise._checks import whole_from
+from spanwise._command_options import add_case, add_json, add_key, add_road
 from spanwise._ensemble_files import as_dict, npz_writer
 from spanwise._files import Content, check_targets, write_files
-from spanwise._key_options import add_key, add_road, add_set
 from spanwise._plain import json_lines
 from spanwise.case import Case
 
@@ -32,10 +32,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         "Speeds or factors that vary from crossing to crossing are lists in [ensemble] of the "
         "case, or are given in Python, to Case.ensemble.",
     )
-    command.add_argument(
-        "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
-    )
-    add_set(command, "ensemble")
+    add_case(command, "ensemble")
     add_key(command, "--samples", "ensemble.samples", "number of crossings", metavar="N")
     add_key(
         command,
@@ -64,11 +61,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         metavar="FILE.npz",
         help="write all extremes of all samples as a NumPy archive",
     )
-    command.add_argument(
-        "--json",
-        metavar="FILE",
-        help="write percentiles as JSON; - for standard output, in place of the summary",
-    )
+    add_json(command, "percentiles")
     command.set_defaults(work=run)
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
+from spanwise._command_options import add_json, add_key, add_set
 from spanwise._core import __version__
 from spanwise._files import write_files
-from spanwise._key_options import add_key, add_set
 from spanwise._plain import json_lines
 from spanwise._shown import warned
 from spanwise.case import Case
@@ -60,11 +60,7 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
     command.add_argument(
         "--every", type=float, metavar="L", help="give the index of segments of this length [m] too"
     )
-    command.add_argument(
-        "--json",
-        metavar="FILE",
-        help="write the results as JSON; - for standard output, in place of the text",
-    )
+    add_json(command, "the results")
     add_set(command, "road")
     for name, more in OLD.items():
         add_key(command, f"--{name}", **{"key": f"road.{name}", **more})

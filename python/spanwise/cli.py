@@ -12,10 +12,10 @@ from typing import Any, NoReturn
 
 from spanwise import _ensemblecommand, _roadcommand
 from spanwise._checks import count
+from spanwise._command_options import add_case, add_json, add_key, add_road
 from spanwise._core import __version__
 from spanwise._figures import figure_files
 from spanwise._files import Content, write_files
-from spanwise._key_options import add_key, add_road, add_set
 from spanwise._keys import suggestion
 from spanwise._run_files import csv_files, json_text
 from spanwise._signals import Terminated, terminable
@@ -121,10 +121,7 @@ def _parser() -> _Parser:
         description="Drive a vehicle, or several, over a bridge once and print the largest "
         "responses and the impact factors. Everything is computed before any file is written.",
     )
-    cross.add_argument(
-        "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
-    )
-    add_set(cross, "crossing")
+    add_case(cross, "crossing")
     add_key(
         cross,
         "--speed",
@@ -137,11 +134,7 @@ def _parser() -> _Parser:
     cross.add_argument(
         "--seed", type=int, metavar="N", help="seed of the random road, in all its random parts"
     )
-    cross.add_argument(
-        "--json",
-        metavar="FILE",
-        help="write the results as JSON; - for standard output, in place of the summary",
-    )
+    add_json(cross, "the results")
     cross.add_argument(
         "--csv", type=Path, metavar="DIR", help="write impact factors, extremes and histories there"
     )

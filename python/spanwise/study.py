@@ -110,9 +110,7 @@ def ensemble(
         The same in absolute values, in the unit of the attribute of `Vehicle`, `Body` or `Axle`:
         masses [kg] (loads [N] of a train of forces), inertias [kg m2], stiffnesses [N/m], dampings
         [N s/m], friction [N]. They must not be multiples of nothing. Not for the bridge.
-    modes : int, optional
-        Number of natural modes included, as for `cross`.
-    drive, damping, approach, ramp, tail, recovery, beta, gravity, lift_off
+    modes, drive, damping, approach, ramp, tail, recovery, beta, gravity, lift_off, mask
         As for `cross`; by default the tail of each sample is as long as it needs, for the
         quantities and sections looked at.
     sections : sequence of float, optional
@@ -129,9 +127,6 @@ def ensemble(
     step : float, optional
         Longest time step [s]; by default as for `cross`. Vehicles alone at constant speed from the
         left never take longer ways than they do by default: for that give `advance`.
-    mask : float, optional
-        Impact factors are not given where the static value is at most this fraction of the largest
-        among the sections.
     threads : int, optional
         Threads at most; by default as many as the processor has. More than four to a processor are
         not started, nor more than the system allows. Results do not depend on them.

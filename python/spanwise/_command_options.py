@@ -1,10 +1,11 @@
-"""Options that set keys of a case: ``--set key=value`` for any, short ones for some."""
+"""What commands have in common: the case, and options for its keys, ``--set key=value`` for any."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any, Final
 
 from spanwise._case_tables import assignment, value_of
@@ -56,6 +57,20 @@ def _telling(read: Callable[[str], Any]) -> Callable[[str], Any]:
             raise argparse.ArgumentTypeError(str(error)) from None
 
     return told
+
+
+def add_case(command: argparse.ArgumentParser, table: str) -> None:
+    """Add the case, and ``--set``."""
+    command.add_argument(
+        "case", type=Path, metavar="CASE.toml", help="bridge, vehicles, road, crossing, in SI units"
+    )
+    add_set(command, table)
+
+
+def add_json(command: argparse.ArgumentParser, what: str) -> None:
+    """Add the option that asks for JSON."""
+    help = f"write {what} as JSON; - for standard output, in place of the text"
+    command.add_argument("--json", metavar="FILE", help=help)
 
 
 def add_set(command: argparse.ArgumentParser, table: str) -> None:
