@@ -68,5 +68,8 @@ def test_what_shows_results_waits_until_it_is_asked_for() -> None:
     loaded = {*done.stdout.split()}
     assert "spanwise.runs" in loaded
     views = ("plotting", "_run_summary", "_run_files", "_ensemble_summary", "_ensemble_tables")
+    readers = ("roads.reading", "roads.sheet", "roads.sniffing", "cli")
+    assert loaded.isdisjoint(f"spanwise.{name}" for name in readers)
+    assert loaded.isdisjoint(("tomllib", "csv", "argparse", "concurrent.futures"))
     assert loaded.isdisjoint(f"spanwise.{name}" for name in views)
     assert loaded.isdisjoint(("matplotlib", "pandas", "pyarrow", "xarray", "scipy"))
