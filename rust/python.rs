@@ -3,6 +3,7 @@
 mod bridge;
 mod crossing;
 mod ensemble;
+mod given;
 mod road;
 mod vehicle;
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -9,16 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
+from spanwise._conditions import Conditions
 from spanwise._core import __version__
 from spanwise._value import frozen, same
 from spanwise.bridge import Bridge
 from spanwise.errors import InputError
+from spanwise.roads import Road
 from spanwise.traffic import Passage
 
 Array: TypeAlias = NDArray[np.float64]
 
-#: What of a call the histories depend on beside the states.
-ASKED = ("modes", "damping", "damping_matrix", "sections", "recovery")
+#: What a crossing is computed anew from beside its states.
+GIVEN = ("bridge", "passages", "_conditions", "_speed", "_road")
 
 
 class Computed:
@@ -31,12 +34,14 @@ class Computed:
         self,
         bridge: Bridge,
         passages: tuple[Passage, ...],
-        asked: dict[str, Any],
+        conditions: Conditions,
+        speed: float | None,
+        road: Road,
         core: _core.Crossing,
     ) -> None:
-        self.bridge, self.passages = bridge, passages
+        self.bridge, self.passages, self._speed, self._road = bridge, passages, speed, road
         # Where it was looked at, also if that was not asked for.
-        self._asked = {key: asked[key] for key in ASKED} | {"sections": core.sections.tolist()}
+        self._conditions = replace(conditions, sections=core.sections.tolist())
         self._histories: dict[str, list[Array]] = {}
         # In place of what would be made of the states.
         self.__dict__["core"] = core
@@ -44,8 +49,14 @@ class Computed:
     @cached_property
     def core(self) -> _core.Crossing:
         """The crossing as the core has it."""
-        vehicles = [each.vehicle._core for each in self.passages]
-        return _core.Crossing.received(self.bridge._core, vehicles, self._state, **self._asked)
+        return _core.Crossing.received(
+            self.bridge._core,
+            self.passages,
+            self._conditions,
+            self._state,
+            speed=self._speed,
+            road=self._road._core,
+        )
 
     @cached_property
     def _state(self) -> bytes:
@@ -58,7 +69,7 @@ class Computed:
         return self._histories[name]
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {name: getattr(self, name) for name in ("bridge", "passages", "_asked", "_state")}
+        kept = {name: getattr(self, name) for name in (*GIVEN, "_state")}
         return {**kept, "version": __version__}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -75,7 +86,7 @@ class Computed:
     def __eq__(self, other: object) -> bool:
         if type(other) is not Computed:
             return NotImplemented
-        names = ("bridge", "_asked", "_state")
+        names = (*GIVEN, "_state")
         return all(same(getattr(self, name), getattr(other, name)) for name in names)
 
     __hash__ = None  # type: ignore[assignment]

@@ -11,7 +11,7 @@ from spanwise._value import Value
 from spanwise._warnings import DampingWarning, warn
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
-from spanwise.damping import Damping, damping_of, plain_damping, resolved
+from spanwise.damping import Array, Damping, Rayleigh, damping_of, plain_damping, resolved
 from spanwise.errors import InputError
 from spanwise.traffic import Drive, drive_of
 
@@ -80,53 +80,51 @@ class Crossing(Settings):
     speed: float | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Conditions(Value):
-    """The settings with what is by default, for a bridge and a road.
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Conditions(Value, Settings):
+    """The settings with what is by default, for a bridge and a road; the core reads them.
 
     Attributes
     ----------
-    core : dict
-        As the core takes them.
-    settings : dict
-        As a case file writes them; modes, drive, step and sections are not among them.
-    modes : int
-        Number of modes.
-    mask : float
-        Below which part of the largest static value there are no impact factors.
+    ratios : list of float
+        Damping by ratios to critical, one for all modes or one for each.
+    matrix : ndarray or None
+        Damping by a matrix, if it is by one.
     """
 
-    core: dict[str, Any]
-    settings: dict[str, object]
     modes: int
-    mask: float
+    damping: Rayleigh | list[float] | Array
+    approach: float
+    ramp: float
+    ratios: list[float]
+    matrix: Array | None
+
+    def __post_init__(self) -> None:
+        """They are checked already."""
 
     @classmethod
-    def of(cls, bridge: Bridge, asked: Settings, *, uneven: bool) -> Conditions:
+    def filled(cls, bridge: Bridge, asked: Settings, *, uneven: bool) -> Conditions:
         """Settings filled in; `uneven` tells whether any road is."""
-        approach, ramp = asked.approach, asked.ramp
-        if approach is None:
-            approach = APPROACH if uneven else 0.0
-        if ramp is None:
-            ramp = min(RAMP, approach) if uneven else 0.0
-        modes = bridge.default_modes() if asked.modes is None else asked.modes
+        given = {each.name: getattr(asked, each.name) for each in fields(Settings)}
+        if asked.approach is None:
+            given["approach"] = APPROACH if uneven else 0.0
+        if asked.ramp is None:
+            given["ramp"] = min(RAMP, given["approach"]) if uneven else 0.0
+        modes = given["modes"] = bridge.default_modes() if asked.modes is None else asked.modes
         if asked.damping is None:
             warn(UNDAMPED, DampingWarning)
-        damping = damping_of(0.0 if asked.damping is None else asked.damping)
-        ratios, matrix = resolved(damping, lambda: bridge.modes(modes).frequencies)
-        names = ("recovery", "beta", "gravity", "lift_off")
-        common = {"approach": approach, "ramp": ramp, "tail": asked.tail}
-        common |= {name: getattr(asked, name) for name in names}
-        core = {
-            **common,
-            "modes": modes,
-            "damping": ratios,
-            "damping_matrix": matrix,
-            "step": asked.step,
-            "sections": asked.sections,
+        given["damping"] = damping_of(0.0 if asked.damping is None else asked.damping)
+        ratios, matrix = resolved(given["damping"], lambda: bridge.modes(modes).frequencies)
+        return cls(**given, ratios=ratios, matrix=matrix)
+
+    @property
+    def plain(self) -> dict[str, object]:
+        """As a case file writes them; modes, drive, step and sections are not among them."""
+        names = ("approach", "ramp", "tail", "recovery", "beta", "gravity", "lift_off", "mask")
+        return {
+            "damping": plain_damping(self.damping),
+            **{name: getattr(self, name) for name in names},
         }
-        settings = {"damping": plain_damping(damping), **common, "mask": asked.mask}
-        return cls(core, settings, modes, asked.mask)
 
 
 def masked(mask: object) -> float:

@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, TypeAlias, final
 
 import numpy as np
@@ -36,14 +36,17 @@ __all__ = [
 
 __version__: Final[str]
 
-_Friction: TypeAlias = tuple[float, float, float | None, float | None]
-_Axle: TypeAlias = tuple[list[float], _Friction]
-_Hinge: TypeAlias = tuple[int, float, float, float]
-_Spring: TypeAlias = tuple[int, float, float, float, float, _Friction]
-_Body: TypeAlias = tuple[list[float], list[_Axle], _Hinge | None, list[_Spring]]
 _Array: TypeAlias = NDArray[np.float64]
-_Support: TypeAlias = tuple[float, float, float]
-_Along: TypeAlias = tuple[list[float] | None, list[float], int]
+
+# What is read by attribute: the classes of these names, and `_Plan` and `_Conditions` of a call.
+_Along: TypeAlias = object
+_Body: TypeAlias = object
+_Conditions: TypeAlias = object
+_Factors: TypeAlias = object
+_Passage: TypeAlias = object
+_Plan: TypeAlias = object
+_Support: TypeAlias = object
+
 _Sides: TypeAlias = tuple[_Array, _Array | None]
 
 @final
@@ -51,8 +54,9 @@ class Bridge:
     def __new__(
         cls,
         *,
+        spans: tuple[list[float], str, str] | None,
         length: float,
-        supports: list[_Support],
+        supports: Sequence[_Support],
         hinges: list[float],
         flexural_rigidity: _Along,
         mass: _Along,
@@ -61,12 +65,10 @@ class Bridge:
         point_masses: list[tuple[float, float]],
     ) -> Bridge: ...
     @staticmethod
-    def consecutive(spans: list[float], ends: tuple[str, str]) -> tuple[float, list[_Support]]: ...
-    @staticmethod
     def from_flexibility(
         *,
         length: float,
-        supports: list[_Support],
+        supports: Sequence[_Support],
         stations: list[float],
         masses: list[float],
         redundants: list[tuple[float, float]],
@@ -82,7 +84,7 @@ class Bridge:
         shapes: _Sides,
         slopes: _Sides | None,
         sections: list[float],
-        supports: list[_Support],
+        supports: Sequence[_Support],
         influence: list[tuple[str, _Sides, _Sides | None, _Array | None]],
         masses: list[float] | None,
     ) -> Bridge: ...
@@ -91,7 +93,7 @@ class Bridge:
     @property
     def length(self) -> float: ...
     @property
-    def supports(self) -> list[_Support]: ...
+    def supports(self) -> list[tuple[float, float, float]]: ...
     @property
     def hinges(self) -> _Array: ...
     @property
@@ -125,7 +127,7 @@ class Bridge:
 
 @final
 class Vehicle:
-    def __new__(cls, bodies: list[_Body]) -> Vehicle: ...
+    def __new__(cls, bodies: Sequence[_Body], alone: bool) -> Vehicle: ...
     @staticmethod
     def force_train(loads: list[float], positions: list[float]) -> Vehicle: ...
     @staticmethod
@@ -137,7 +139,7 @@ class Vehicle:
     @property
     def places(self) -> NDArray[np.float64]: ...
     @property
-    def bodies(self) -> list[_Body]: ...
+    def bodies(self) -> list[dict[str, Any]]: ...
     @property
     def body_positions(self) -> NDArray[np.float64]: ...
     @property
@@ -223,14 +225,12 @@ class Crossing:
     @staticmethod
     def received(
         bridge: Bridge,
-        vehicles: list[Vehicle],
+        passages: Sequence[_Passage],
+        conditions: _Conditions,
         state: bytes,
         *,
-        modes: int,
-        damping: list[float],
-        damping_matrix: _Array | None,
-        sections: list[float] | None,
-        recovery: str,
+        speed: float | None,
+        road: Road,
     ) -> Crossing: ...
     @property
     def state(self) -> bytes: ...
@@ -259,7 +259,7 @@ class Crossing:
     def lift_offs(self) -> list[tuple[int, float, float]]: ...
     @property
     def load_coefficients(self) -> NDArray[np.float64]: ...
-    def motion(self, vehicle: int, drift: list[float]) -> NDArray[np.float64]: ...
+    def motion(self, vehicle: int) -> NDArray[np.float64]: ...
     def quasi_static_acceleration(self) -> NDArray[np.float64]: ...
     def histories(self, name: str) -> list[NDArray[np.float64]]: ...
     def states(self, name: str) -> NDArray[np.float64]: ...
@@ -268,33 +268,13 @@ class Crossing:
         self, quantity: str, sense: str, ratio: str, mask: float
     ) -> NDArray[np.float64]: ...
 
-# Vehicle, speed, drive, direction, entry, lane, road.
-_Passage: TypeAlias = tuple[
-    Vehicle,
-    float | None,
-    tuple[str, list[float], list[float]] | None,
-    str,
-    float,
-    int,
-    Road | None,
-]
-
 def cross(
     bridge: Bridge,
-    passages: list[_Passage],
+    passages: Sequence[_Passage],
+    conditions: _Conditions,
     *,
-    modes: int,
-    damping: list[float],
-    damping_matrix: NDArray[np.float64] | None,
-    beta: float,
-    step: float | None,
-    approach: float,
-    ramp: float,
-    tail: float | None,
-    gravity: float,
-    lift_off: bool,
-    sections: list[float] | None,
-    recovery: str,
+    speed: float | None,
+    road: Road,
 ) -> Crossing: ...
 
 @final
@@ -345,43 +325,17 @@ class Clock:
     @staticmethod
     def joined(clocks: list[Clock]) -> tuple[Clock, list[list[int]]]: ...
 
-_Factors: TypeAlias = tuple[str, int, _Array]
-
-def varied(event: list[_Passage], factors: list[_Factors]) -> list[Vehicle]: ...
-def static_loads(
-    kinds: list[list[_Passage]],
-    kind_of: NDArray[np.uint32],
-    count: int,
-    factors: list[_Factors],
-    gravity: float,
-) -> _Array: ...
+def varied(event: Sequence[_Passage], factors: Sequence[_Factors]) -> list[Vehicle]: ...
+def static_loads(plan: _Plan, gravity: float) -> _Array: ...
 def fingerprint(digests: NDArray[np.uint64]) -> int: ...
 def ensemble(
     bridge: Bridge,
-    kinds: list[list[_Passage]],
+    plan: _Plan,
     *,
-    drive: tuple[str, list[float], list[float]],
-    road: Road,
-    own_road: tuple[Any, ...] | None,
-    modes: int,
-    damping: list[float],
-    damping_matrix: _Array | None,
-    beta: float,
-    step: float | None,
-    advance: float | None,
-    approach: float,
-    ramp: float,
-    tail: float | None,
-    gravity: float,
-    lift_off: bool,
-    sections: list[float] | None,
-    recovery: str,
-    quantities: list[str],
-    first: int,
-    count: int,
-    kind_of: NDArray[np.uint32],
+    events: Sequence[Sequence[_Passage]],
     speeds: _Array,
-    factors: list[_Factors],
+    road: Road,
+    quantities: list[str],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> Ensemble: ...

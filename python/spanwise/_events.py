@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -242,10 +242,3 @@ def speeds_by_kind(
         return speeds
     brought = np.array([np.nan if each.speed is None else each.speed for (each,) in events])[kinds]
     return Speeds(speeds.given, np.where(np.isnan(brought), speeds.column, brought))
-
-
-def core_road(road: ISO8608 | None, seed: int) -> tuple[Any, ...] | None:
-    """What the core makes the samples' roads of."""
-    if road is None:
-        return None
-    return road.G, road.waviness, road.band, road.contact_patch, road.period, seed

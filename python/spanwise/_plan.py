@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spanwise import _core
-from spanwise._conditions import Conditions
+from spanwise._conditions import Conditions, Settings
 from spanwise._events import Event, Speeds, is_simple
 from spanwise._plausible import doubts
 from spanwise._rows import Rows
 from spanwise._value import Value
 from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
-from spanwise.crossing import core_passage, cross
+from spanwise.crossing import cross
 from spanwise.errors import InputError
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
@@ -110,15 +110,8 @@ class Plan(Value):
 
     def static_loads(self) -> Array:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
-        varied = self.varies_loads
-        loads = _core.static_loads(
-            [[*map(core_passage, event)] for event in self.events],
-            self.kinds if varied else self.kinds[:1],
-            self.samples if varied else 1,
-            [each.core for each in self.factors] if varied else [],
-            self.conditions.core["gravity"],
-        )
-        return loads if varied else loads[0]
+        loads = _core.static_loads(self, self.conditions.gravity)
+        return loads if self.varies_loads else loads[0]
 
     def event(self, sample: int) -> Event:
         """Who crosses in a sample, as they are before factors."""
@@ -135,10 +128,7 @@ class Plan(Value):
         event = self.event(sample)
         if all(each.name.startswith("bridge_") for each in self.factors):
             return [each.vehicle for each in event]
-        varied = _core.varied(
-            [*map(core_passage, event)],
-            [each.of(sample).core for each in self.factors],
-        )
+        varied = _core.varied(event, [each.of(sample) for each in self.factors])
         return [_scaled(one.vehicle, core) for one, core in zip(event, varied, strict=True)]
 
     def doubts(self) -> tuple[str, ...]:
@@ -153,13 +143,13 @@ class Plan(Value):
             road=self.settings["road"],
             conditions=self.conditions,
             # Side by side no way is longer than by default, or `advance`, whatever the step is.
-            step=None if simple and self.advance is None else self.conditions.core["step"],
+            step=None if simple and self.advance is None else self.conditions.step,
             advance=self.advance if simple else None,
         )
 
     def idle(self) -> list[str]:
         """Sentences to say of factors on nothing."""
-        return [*idle(self.factors, self.events, self.conditions.core)]
+        return [*idle(self.factors, self.events, self.conditions.ratios, self.conditions.matrix)]
 
     @property
     def roads(self) -> list[Road]:
@@ -210,9 +200,9 @@ class Plan(Value):
             if speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
                 speed = self.speeds.of(sample, number, self.samples)
             passages.append(replace(passage, vehicle=vehicle, speed=speed))
-        given: dict[str, Any] = {**self.conditions.core}
-        matrix = given.pop("damping_matrix")
-        given["damping"] = given["damping"] if matrix is None else matrix
+        of_all = self.conditions
+        given: dict[str, Any] = {each.name: getattr(of_all, each.name) for each in fields(Settings)}
+        given["damping"] = of_all.ratios if of_all.matrix is None else of_all.matrix
         if given["tail"] is None:
             given["tail"] = tail
         speeds = self.front_speeds
@@ -230,8 +220,6 @@ class Plan(Value):
             bridge,
             passages,
             road=self.road_of(sample),
-            drive=self.drive,
-            mask=self.conditions.mask,
             **common,
             **given,
         )

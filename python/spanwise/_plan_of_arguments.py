@@ -88,8 +88,8 @@ def plan_of(bridge: Bridge, vehicle: object, asked: Asked) -> tuple[Plan, Speeds
     uneven = own is not None or not all(
         (each.road or shared).is_smooth for event in events for each in event
     )
-    conditions = Conditions.of(bridge, asked, uneven=uneven)
-    refuse_overdamped(varied, conditions.core["damping"], asked.first)
+    conditions = Conditions.filled(bridge, asked, uneven=uneven)
+    refuse_overdamped(varied, conditions.ratios, asked.first)
     looked_at = _quantities(bridge, asked.quantities)
     told = speeds_told(speeds, events, kinds, samples, driven)
     settings: dict[str, Any] = {
@@ -101,7 +101,7 @@ def plan_of(bridge: Bridge, vehicle: object, asked: Asked) -> tuple[Plan, Speeds
         "factors": {each.name: each.plain for each in varied} or None,
         "modes": conditions.modes,
         "drive": driven,
-        **conditions.settings,
+        **conditions.plain,
         "sections": asked.sections,
         "quantities": [*looked_at],
         "advance": asked.advance,

@@ -7,7 +7,7 @@ times as wide as what is published, so that footbridges, models in laboratories 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Final, TypeAlias
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from spanwise._conditions import Conditions
 from spanwise.bridge import Bridge
+from spanwise.damping import Rayleigh
 from spanwise.roads import ISO8608, Profile, Road
 from spanwise.traffic import Drive, Passage, Speeds
 from spanwise.vehicle import Vehicle
@@ -72,7 +73,7 @@ def doubts(
     """Sentences to say of what a crossing, or the events of an ensemble, hardly mean."""
     span = _longest_span(bridge)
     moving = float(bridge.masses.sum()) * span / bridge.length
-    gravity = conditions.core["gravity"]
+    gravity = conditions.gravity
     found = [*_frequency(bridge, span, first_frequency), *_damping(conditions)]
     seen: set[str] = set()
     for passage in (each for event in events for each in event):
@@ -150,9 +151,9 @@ def _frequency(bridge: Bridge, span: float, first: float) -> Iterator[str]:
 
 def _damping(conditions: Conditions) -> Iterator[str]:
     """Of the bridge: ratios in percent, or tenths for hundredths."""
-    ratios = conditions.core["damping"]
+    ratios = conditions.ratios
     # Rayleigh's constants may damp upper modes more than any bridge is.
-    by_rayleigh = isinstance(conditions.settings["damping"], Mapping)
+    by_rayleigh = isinstance(conditions.damping, Rayleigh)
     ratio = (min if by_rayleigh else max)(ratios, default=0.0)
     if ratio >= _DAMPED:
         yield (

@@ -76,11 +76,6 @@ class Factors(Value):
         return Factors(self.name, self.values[row : row + 1])
 
     @property
-    def core(self) -> tuple[str, int, Array]:
-        """As the core takes them."""
-        return self.name, self.values.shape[1], np.ascontiguousarray(self.values).ravel()
-
-    @property
     def plain(self) -> float | Array:
         """As a caller gives them."""
         if self.values.shape == (1, 1):
@@ -144,16 +139,18 @@ def refuse_overdamped(factors: Sequence[Factors], ratios: Sequence[float], first
 
 
 def idle(
-    factors: Sequence[Factors], events: Sequence[Event], bridge: Mapping[str, Any]
+    factors: Sequence[Factors],
+    events: Sequence[Event],
+    ratios: Sequence[float],
+    matrix: Array | None,
 ) -> Iterator[str]:
-    """What to say of factors on what is 0 wherever they would act; `bridge` has its damping."""
+    """What to say of factors on what is 0 wherever they act, with the damping of the bridge."""
     all_ = [each.vehicle for event in events for each in event]
     vehicles = [each for each in all_ if isinstance(each, Vehicle)]
     for each in factors:
         name, there = each.name, False
         if name == "bridge_damping":
-            matrix = bridge["damping_matrix"]
-            there = bool(np.any(bridge["damping"] if matrix is None else matrix))
+            there = bool(np.any(ratios if matrix is None else matrix))
             what = "damping"
         elif name == "bridge_stiffness" or len(vehicles) < len(all_):
             continue

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -27,6 +27,7 @@ from spanwise._keys import alike, suggesting
 from spanwise._value import Value, key, same
 from spanwise.errors import InputError, refused
 from spanwise.layout import (
+    Along,
     AlongBeam,
     AnySupport,
     Support,
@@ -211,17 +212,19 @@ class Bridge:
             (number(f"point_masses[{i}] position", x), number(f"point_masses[{i}] mass", m))
             for i, (x, m) in enumerate(pairs("point_masses", point_masses))
         ]
+        total, placed, consecutive = 0.0, [], None
         if spans is not None:
             held = _two_ends(("pinned", "pinned") if ends is None else ends)
-            total, placed = _core.Bridge.consecutive(numbers("spans", spans), held)
+            consecutive = (numbers("spans", spans), *held)
         else:
             if ends is not None:
                 raise InputError(
                     "ends", None, "used with spans only; supports says how the ends are held"
                 )
             total = number("length", length)
-            placed = [*map(astuple, supports_of("supports", supports))]
+            placed = supports_of("supports", supports)
         self._core = _core.Bridge(
+            spans=consecutive,
             length=total,
             supports=placed,
             hinges=numbers("hinges", hinges),
@@ -235,7 +238,7 @@ class Bridge:
             "length": self.length,
             "supports": [support_argument(each) for each in self.springs],
             "hinges": self.hinges.tolist() or None,
-            "EI": along_argument(rigidity if rigidity[0] else (None, self.EI.tolist(), 1)),
+            "EI": along_argument(rigidity if isinstance(rigidity, Along) else self.EI.tolist()),
             "mass": along_argument(masses),
             "stations_per_span": per_span if at is None else None,
             "stations": at,
@@ -302,7 +305,7 @@ class Bridge:
         at, held = numbers("stations", stations), supports_of("supports", supports)
         given: dict[str, Any] = {
             "length": number("length", length),
-            "supports": [*map(astuple, held)],
+            "supports": held,
             "stations": at,
             "masses": numbers("masses", masses),
             "redundants": [
@@ -400,7 +403,7 @@ class Bridge:
             "path": numbers("path", path),
             "frequencies": numbers("frequencies", frequencies),
             "sections": numbers("sections", sections),
-            "supports": [*map(astuple, held)],
+            "supports": held,
             "masses": None if masses is None else numbers("masses", masses),
         }
         both = _bridge_arrays.sides("shapes", shapes)

@@ -21,7 +21,7 @@ from spanwise.damping import Damping
 from spanwise.errors import InputError
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
-from spanwise.traffic import Drive, Passage, Speeds, core_drive, plain_drive
+from spanwise.traffic import Drive, Passage, Speeds, plain_drive
 from spanwise.vehicles import PRESETS, AnyVehicle
 
 Traffic: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
@@ -164,20 +164,22 @@ def cross(
     speed, driven = asked.speed, asked.drive
     check_speed([passages], speed, driven)
     uneven = not all((each.road or surface).is_smooth for each in passages)
-    conditions = Conditions.of(bridge, asked, uneven=uneven)
+    conditions = Conditions.filled(bridge, asked, uneven=uneven)
     core = _core.cross(
         bridge._core,
-        [core_passage(each, speed, driven, surface) for each in passages],
-        **conditions.core,
+        passages,
+        conditions,
+        speed=speed,
+        road=surface._core,
     )
     settings: dict[str, object] = {
         **({} if speed is None else {"speed": speed}),
         "modes": conditions.modes,
         "drive": plain_drive(driven),
-        **conditions.settings,
+        **conditions.plain,
         "step": core.step,
     }
-    computed = Computed(bridge, passages, conditions.core, core)
+    computed = Computed(bridge, passages, conditions, speed, surface, core)
     doubted = doubts(
         bridge,
         core.omega[0] / (2.0 * np.pi),
@@ -186,7 +188,7 @@ def cross(
         drive=driven,
         road=surface,
         conditions=conditions,
-        step=conditions.core["step"],
+        step=conditions.step,
     )
     run = Run(bridge, passages, surface, settings, computed, doubted)
     for doubt in doubted:
@@ -248,22 +250,3 @@ def check_speed(events: Sequence[tuple[Passage, ...]], speed: float | None, driv
         raise InputError("speed", None, "missing; give it here or with every passage")
     if speed is not None and not needed and timed:
         raise InputError("speed", f"{speed:g}", "not used with speeds in time")
-
-
-def core_passage(
-    passage: Passage,
-    speed: float | None = None,
-    drive: Drive | None = None,
-    road: Road | None = None,
-) -> _core._Passage:
-    """As the core takes it, with what all have in common where it has none of its own."""
-    drive, road = passage.drive or drive, passage.road or road
-    return (
-        passage.vehicle._core,
-        speed if passage.speed is None else passage.speed,
-        None if drive is None else core_drive(drive),
-        passage.direction,
-        passage.entry,
-        passage.lane_number,
-        None if road is None else road._core,
-    )

@@ -83,20 +83,19 @@ AlongBeam: TypeAlias = Numbers | Along | Mapping[str, Any]
 AnySupport: TypeAlias = tuple[float, str] | Sequence[Any] | Support | Mapping[str, Any]
 
 
-def along(key: str, value: object) -> tuple[list[float] | None, list[float], int]:
-    """Breakpoints or None, values, pieces."""
+def along(key: str, value: object) -> Along | list[float]:
+    """Values at or between breakpoints, or one value or one for each span."""
     if isinstance(value, Mapping):
         value = _of_table(Along, key, value, "a number, one for each span,")
     if isinstance(value, Along):
         pieces = count(f"{key} pieces", value.pieces)
-        return numbers(f"{key} at", value.at), numbers(f"{key} values", value.values), pieces
-    return None, numbers(key, value), 1
+        return Along(numbers(f"{key} at", value.at), numbers(f"{key} values", value.values), pieces)
+    return numbers(key, value)
 
 
-def along_argument(given: tuple[list[float] | None, list[float], int]) -> Any:
+def along_argument(given: Along | list[float]) -> Any:
     """What makes the same again, as plain numbers and lists."""
-    at, values, pieces = given
-    return values if at is None else {"at": at, "values": values, "pieces": pieces}
+    return given if isinstance(given, list) else vars(given)
 
 
 def support(key: str, value: object) -> Support:

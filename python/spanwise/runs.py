@@ -229,8 +229,7 @@ class Run(Responses):
         for number_, (passage, stopped) in enumerate(
             zip(self.passages, self._core.stopped, strict=True)
         ):
-            drift = self._drift(passage)
-            columns = frozen(self._core.motion(number_, drift)).T
+            columns = frozen(self._core.motion(number_)).T
             triples = [Motion(*columns[at : at + 3]) for at in range(0, len(columns) - 3, 3)]
             axles = len(passage.vehicle.axle_positions)
             bodies, hops = triples[: len(triples) - axles], triples[len(triples) - axles :]
@@ -241,38 +240,11 @@ class Run(Responses):
                     bodies=tuple(map(BodyMotion, bodies[::2], bodies[1::2])),
                     hops=tuple(hops),
                     **dict(zip(("travel", "speed", "acceleration"), columns[-3:], strict=True)),
-                    **{
-                        kind: frozen(
-                            values[:, own]
-                            + (self._way(passage, own) @ drift if kind == "elevations" else 0.0)
-                        )
-                        for kind, values in by_axle.items()
-                    },
+                    **{kind: frozen(values[:, own]) for kind, values in by_axle.items()},
                     stopped=stopped,
                 )
             )
         return tuple(motions)
-
-    def _drift(self, passage: Passage) -> list[float]:
-        """How much lower the line is from which motion is told, in front of the bridge and per way.
-
-        A vehicle feels a measured road from the line of the first 10 m of its way, which leads off
-        the road in the end: its motion is told from the line of the whole way instead.
-        """
-        road = self.road if passage.road is None else passage.road
-        approach, length = float(str(self.settings["approach"])), self.bridge.length
-        ends = (-approach, length)
-        if passage.direction == "left":
-            ends = (length + approach, 0.0)
-        near, far = road._core.drift(*ends)
-        steeper = (far - near) / (approach + length)
-        return [near + steeper * approach, steeper]
-
-    def _way(self, passage: Passage, axles: slice) -> Array:
-        """One, and the way of axles from where the vehicle enters [m], shape (time, axle, 2)."""
-        x = self._core.states("positions")[:, axles]
-        way = x if passage.direction == "right" else self.bridge.length - x
-        return np.stack([np.ones_like(way), way], axis=-1)
 
     def stop(self, vehicle: int) -> tuple[float, Array] | None:
         """When a vehicle, counted from 0, came to rest [s], and where its axles are then [m]."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from spanwise import _core
 from spanwise._checks import count
 from spanwise._conditions import Recovery
-from spanwise._events import core_road, is_simple, speeds_by_kind
+from spanwise._events import is_simple, speeds_by_kind
 from spanwise._keys import suggesting
 from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._progress import Bar
@@ -20,13 +20,12 @@ from spanwise._rows import Rows
 from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY
 from spanwise.bridge import Bridge
-from spanwise.crossing import core_passage
 from spanwise.damping import Damping
 from spanwise.ensembles import Ensemble
 from spanwise.errors import refused
 from spanwise.quantities import RESPONSES, telling
 from spanwise.roads import Road
-from spanwise.traffic import Drive, Passage, core_drive
+from spanwise.traffic import Drive, Passage
 from spanwise.vehicles import AnyVehicle
 
 Event: TypeAlias = AnyVehicle | Passage | Sequence[Passage]
@@ -173,7 +172,7 @@ def ensemble(
     ``SPANWISE_ISA`` chooses an instruction set; results do not depend on it.
     """
     plan, speeds = plan_of(bridge, vehicle, Asked.of(locals()))
-    conditions, events = plan.conditions, plan.events
+    events = plan.events
     for remark in plan.idle():
         warn(remark)
     for doubt in plan.doubts():
@@ -193,20 +192,13 @@ def ensemble(
     try:
         core = _core.ensemble(
             bridge._core,
-            [[*map(core_passage, event)] for event in events],
-            drive=core_drive(plan.drive),
-            road=plan.road._core,
-            own_road=core_road(plan.own, plan.seed),
-            advance=plan.advance,
-            quantities=[part for name in plan.quantities for part in RESPONSES[name].parts],
-            first=plan.first,
-            count=plan.samples,
-            kind_of=plan.kinds,
+            plan,
+            events=events,
             speeds=column.column,
-            factors=[each.core for each in plan.factors],
+            road=plan.road._core,
+            quantities=[part for name in plan.quantities for part in RESPONSES[name].parts],
             threads=None if threads is None else count("threads", threads),
             progress=listener,
-            **conditions.core,
         )
     finally:
         # The line ends also where the computation does not.

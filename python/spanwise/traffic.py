@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Final, Literal, TypeAlias, cast, get_args
 
 from spanwise._build import Maker, Place, build_kind
@@ -30,9 +30,6 @@ Plain: TypeAlias = Literal["constant-speed", "constant-traction"]
 #: Highest number of a lane.
 MOST_LANE: Final = 2**31 - 1
 
-#: What the core takes for a drive: its name and numbers.
-CoreDrive: TypeAlias = tuple[str, list[float], list[float]]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Acceleration:
@@ -57,9 +54,6 @@ class Acceleration:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "acceleration", finite("acceleration", self.acceleration))
-
-    def _core(self) -> CoreDrive:
-        return self.kind, [self.acceleration], []
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -99,9 +93,6 @@ class Speeds(Brief):
                 )
         object.__setattr__(self, "times", tuple(times))
         object.__setattr__(self, "speeds", tuple(speeds))
-
-    def _core(self) -> CoreDrive:
-        return self.kind, [*self.times], [*self.speeds]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,9 +134,6 @@ class Braking:
             check = checks.get(key, positive)
             object.__setattr__(self, key, check(f"braking {key}", value))
 
-    def _core(self) -> CoreDrive:
-        return self.kind, [*asdict(self).values()], []
-
 
 Drive: TypeAlias = Plain | Acceleration | Speeds | Braking
 
@@ -167,11 +155,6 @@ def drive_of(value: object, place: Place = DRIVE) -> Drive:
         allowed = f"{' or '.join(steady)}; or a drive of its own: {', '.join(KINDS)}"
         raise place.wrong(value, allowed)
     return cast("Plain", value)
-
-
-def core_drive(drive: Drive) -> CoreDrive:
-    """As the core takes it."""
-    return (drive, [], []) if isinstance(drive, str) else drive._core()
 
 
 def plain_drive(drive: Drive) -> str | dict[str, Any]:

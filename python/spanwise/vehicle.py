@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any, TypeVar
 
 from spanwise import _core
-from spanwise._checks import count, number, shown
+from spanwise._build import Maker, Place
 from spanwise._value import Brief
 from spanwise._wheels import Array, Wheels
 from spanwise.errors import InputError, refused
@@ -228,13 +228,7 @@ class Vehicle(Wheels):
             for name in ("mass", "pitch_inertia", "axles", "cg_height"):
                 object.__setattr__(self, name, getattr(body, name))
             bodies = ()
-        parts = bodies or (self._one_body(),)
-        core = _core.Vehicle(
-            [
-                _body(body, f"bodies[{b}]." if bodies else "", _pitches(parts, b))
-                for b, body in enumerate(parts)
-            ]
-        )
+        core = _core.Vehicle(bodies or (self._one_body(),), alone=not bodies)
         if bodies:
             axles = tuple(bodies[b].axles[i] for b, i in core.axle_order)
             self._check_alone(axles)
@@ -321,122 +315,11 @@ def _all(key: str, values: object, kind: type[T]) -> tuple[T, ...]:
     return tuple(values)
 
 
-def _pitches(bodies: Sequence[Body], b: int) -> bool:
-    """Whether anything acts on a body away from its centre of mass."""
-    own = [*(axle.position for axle in bodies[b].axles), *(end.own for end in bodies[b].joints)]
-    there = [end.at for body in bodies for end in body.joints if _is(end.to, b)]
-    return any(not _is(place, 0.0) for place in (*own, *there))
-
-
 def _is(given: object, value: float) -> bool:
     """Whether it is this number; what is none is refused later, by name."""
     return isinstance(given, Real) and bool(given == value)
 
 
-def _body(body: Body, prefix: str, pitches: bool) -> _core._Body:
-    mass = "vehicle mass" if not prefix else f"{prefix}mass"
-    # Of a body that does not pitch any inertia will do.
-    inertia: object = body.pitch_inertia
-    if inertia is None and pitches:
-        raise InputError(f"{prefix}pitch_inertia", "None", "must be a number, for the body pitches")
-    if inertia is None:
-        inertia = 1.0
-    values = [
-        number(mass, body.mass),
-        number(f"{prefix}pitch_inertia", inertia),
-        number(f"{prefix}cg_height", body.cg_height),
-    ]
-    axles = [_axle(axle, f"{prefix}axles[{k}].") for k, axle in enumerate(body.axles)]
-    hinge = None
-    if body.hinge is not None:
-        ends = _ends(body.hinge, f"{prefix}hinge.")
-        hinge = (*ends, number(f"{prefix}hinge.height", body.hinge.height))
-    springs = [_spring(spring, f"{prefix}springs[{k}].") for k, spring in enumerate(body.springs)]
-    return values, axles, hinge, springs
-
-
-def _axle(axle: Axle, prefix: str) -> _core._Axle:
-    names = (
-        "position",
-        "mass",
-        "tyre_stiffness",
-        "tyre_damping",
-        "suspension_stiffness",
-        "suspension_damping",
-    )
-    return [number(prefix + name, getattr(axle, name)) for name in names], _friction(axle, prefix)
-
-
-def _spring(spring: Spring, prefix: str) -> _core._Spring:
-    stiffness = number(f"{prefix}stiffness", spring.stiffness)
-    damping = number(f"{prefix}damping", spring.damping)
-    return (*_ends(spring, prefix), stiffness, damping, _friction(spring, prefix))
-
-
-def _ends(coupling: Hinge | Spring, prefix: str) -> tuple[int, float, float]:
-    to = count(f"{prefix}to", coupling.to)
-    return to, number(f"{prefix}at", coupling.at), number(f"{prefix}own", coupling.own)
-
-
-def _friction(of: Axle | Spring, prefix: str) -> _core._Friction:
-    limit = number(f"{prefix}friction_limit", of.friction_limit)
-    initial = number(f"{prefix}initial_friction", of.initial_friction)
-    stick, decay = of.stick_stiffness, of.leaf_decay
-    if stick is not None and decay is not None:
-        raise refused(
-            f"{prefix}stick_stiffness",
-            stick,
-            f"not beside leaf_decay = {shown(decay)}; give one of the two",
-        )
-    if stick is not None:
-        stick = number(f"{prefix}stick_stiffness", stick)
-    if decay is not None:
-        decay = number(f"{prefix}leaf_decay", decay)
-    return limit, initial, stick, decay
-
-
 def bodies_of(core: _core.Vehicle) -> list[Body]:
     """The bodies of a vehicle of the core."""
-    return [_body_of(each) for each in core.bodies]
-
-
-def _body_of(body: _core._Body) -> Body:
-    (mass, inertia, height), axles, hinge, springs = body
-    return Body(
-        mass=mass,
-        pitch_inertia=inertia,
-        cg_height=height,
-        axles=[_axle_of(each) for each in axles],
-        hinge=None
-        if hinge is None
-        else Hinge(to=hinge[0], at=hinge[1], own=hinge[2], height=hinge[3]),
-        springs=[
-            Spring(
-                to=to,
-                at=at,
-                own=own,
-                stiffness=stiffness,
-                damping=damping,
-                **_friction_of(friction),
-            )
-            for to, at, own, stiffness, damping, friction in springs
-        ],
-    )
-
-
-def _axle_of(axle: _core._Axle) -> Axle:
-    (position, mass, tyre, tyre_damping, suspension, damping), friction = axle
-    return Axle(
-        position=position,
-        mass=mass,
-        tyre_stiffness=tyre,
-        tyre_damping=tyre_damping,
-        suspension_stiffness=suspension,
-        suspension_damping=damping,
-        **_friction_of(friction),
-    )
-
-
-def _friction_of(friction: _core._Friction) -> dict[str, Any]:
-    names = ("friction_limit", "initial_friction", "stick_stiffness", "leaf_decay")
-    return dict(zip(names, friction, strict=True))
+    return [Maker(Body).build(each, Place()) for each in core.bodies]

@@ -200,6 +200,15 @@ impl<'a> Course<'a> {
         self.road.datum(self.place(-settings.approach, length), self.place(length, length))
     }
 
+    /// How much lower than that line the one is from which motion is told, at the end at which the vehicle enters, and how
+    /// much more per way. A vehicle feels a measured road from the line of the first 10 m of its way, which leads off the
+    /// road in the end: its motion is told from the line of the whole way instead.
+    pub fn drift(&self, settings: &Settings, length: f64) -> [f64; 2] {
+        let [near, far] = self.road.drift(self.place(-settings.approach, length), self.place(length, length));
+        let steeper = (far - near) / (settings.approach + length);
+        [near + steeper * settings.approach, steeper]
+    }
+
     /// How much that line rises per way [-].
     pub fn grade(&self, settings: &Settings, length: f64) -> f64 {
         self.direction.sign() * self.datum(settings, length).slope

@@ -6,6 +6,7 @@ use faer::Mat;
 use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
+use super::given::one_of;
 use super::{Matrix, Vector, matrix, preparing, rows};
 use crate::bridge::cubics::{COINCIDENT, Line, Mesh, check_lines};
 use crate::bridge::distribution::Along;
@@ -27,16 +28,8 @@ use crate::statics::quantity::Quantity;
 use crate::statics::settlement::Settled;
 use crate::stop_token::StopToken;
 
-fn fixity(name: &str, key: &str, free: bool) -> Result<Option<Fixity>, Error> {
-    match name {
-        "pinned" => Ok(Some(Fixity::Pinned)),
-        "clamped" => Ok(Some(Fixity::Clamped)),
-        "free" if free => Ok(None),
-        _ => {
-            let allowed = if free { "must be pinned, clamped or free" } else { "must be pinned or clamped" };
-            Err(Error::input(key, format!("\"{name}\""), allowed))
-        }
-    }
+fn fixity(name: &str, key: &str) -> Result<Option<Fixity>, Error> {
+    one_of(key, name, [("pinned", Some(Fixity::Pinned)), ("clamped", Some(Fixity::Clamped)), ("free", None)])
 }
 
 fn structure(name: &str) -> Result<Structure, Error> {
@@ -137,25 +130,36 @@ fn order(bridge: &Bridge) -> usize {
     bridge.stations().len().max(bridge.supports().len() + bridge.hinges().len())
 }
 
-/// Positions and springs of supports; the names pinned, clamped and free are Python's.
-type PySupport = (f64, f64, f64);
+/// Position and springs of a support; the names pinned, clamped and free are Python's.
+#[derive(FromPyObject)]
+struct PySupport {
+    at: f64,
+    vertical: f64,
+    rotation: f64,
+}
 
 fn supports_of(given: Vec<PySupport>) -> Vec<Support> {
-    let support = |(at, vertical, rotation)| Support { at, fixity: Fixity::Elastic { vertical, rotation } };
+    let support = |PySupport { at, vertical, rotation }| Support { at, fixity: Fixity::Elastic { vertical, rotation } };
     given.into_iter().map(support).collect()
 }
 
-/// Breakpoints, values and pieces of something along the beam; without breakpoints one value or one for each span.
-type PyAlong = (Option<Vec<f64>>, Vec<f64>, usize);
+/// Something along the beam: one value or one for each span, or values at breakpoints or between them.
+#[derive(FromPyObject)]
+enum PyAlong {
+    PerSpan(Vec<f64>),
+    Between { at: Vec<f64>, values: Vec<f64>, pieces: usize },
+}
 
-fn along((at, values, pieces): PyAlong) -> Along {
-    match at {
-        Some(at) => Along::Between { at, values, pieces },
-        None => Along::PerSpan(values),
+impl From<PyAlong> for Along {
+    fn from(given: PyAlong) -> Self {
+        match given {
+            PyAlong::PerSpan(values) => Along::PerSpan(values),
+            PyAlong::Between { at, values, pieces } => Along::Between { at, values, pieces },
+        }
     }
 }
 
-fn mat(a: PyReadonlyArray2<'_, f64>) -> Mat<f64> {
+pub fn mat(a: PyReadonlyArray2<'_, f64>) -> Mat<f64> {
     let a = a.as_array();
     Mat::from_fn(a.nrows(), a.ncols(), |i, j| a[[i, j]])
 }
@@ -220,9 +224,11 @@ pub struct PyBridge(pub Arc<Solved>);
 impl PyBridge {
     #[new]
     #[allow(clippy::too_many_arguments)] // one per argument that Python names
-    #[pyo3(signature = (*, length, supports, hinges, flexural_rigidity, mass, stations_per_span, stations, point_masses))]
+    #[pyo3(signature = (*, spans, length, supports, hinges, flexural_rigidity, mass, stations_per_span, stations,
+                        point_masses))]
     fn new(
         py: Python<'_>,
+        spans: Option<(Vec<f64>, String, String)>,
         length: f64,
         supports: Vec<PySupport>,
         hinges: Vec<f64>,
@@ -232,12 +238,19 @@ impl PyBridge {
         stations: Option<Vec<f64>>,
         point_masses: Vec<(f64, f64)>,
     ) -> PyResult<Self> {
+        let (length, supports) = match spans {
+            None => (length, supports_of(supports)),
+            Some((spans, left, right)) => {
+                let ends = [fixity(&left, "ends[0]")?, fixity(&right, "ends[1]")?];
+                Bridge::consecutive(&spans, ends)?
+            }
+        };
         let layout = Layout {
             length,
-            supports: supports_of(supports),
+            supports,
             hinges,
-            flexural_rigidity: along(flexural_rigidity),
-            mass: along(mass),
+            flexural_rigidity: flexural_rigidity.into(),
+            mass: mass.into(),
             stations: stations.map_or(Stations::PerSpan(stations_per_span), Stations::At),
             point_masses,
         };
@@ -251,14 +264,6 @@ impl PyBridge {
             Ok(bridge)
         })?;
         Ok(PyBridge(Solved::new(Source::Described(Box::new(bridge)))))
-    }
-
-    /// Length and supports of consecutive spans.
-    #[staticmethod]
-    fn consecutive(spans: Vec<f64>, ends: (String, String)) -> PyResult<(f64, Vec<PySupport>)> {
-        let ends = [fixity(&ends.0, "ends[0]", true)?, fixity(&ends.1, "ends[1]", true)?];
-        let (length, supports) = Bridge::consecutive(&spans, ends)?;
-        Ok((length, supports.iter().map(|s| (s.at, s.fixity.vertical(), s.fixity.rotation())).collect()))
     }
 
     /// A bridge given by the flexibility of its basic bridge.
@@ -323,7 +328,7 @@ impl PyBridge {
     }
 
     #[getter]
-    fn supports(&self) -> Vec<PySupport> {
+    fn supports(&self) -> Vec<(f64, f64, f64)> {
         let supports = match &self.0.source {
             Source::Described(bridge) => bridge.supports(),
             Source::Given(given) => given.supports(),

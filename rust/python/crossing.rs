@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
 use nalgebra::DVector;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use super::bridge::{Asked, PyBridge};
+use super::bridge::{Asked, PyBridge, mat};
+use super::given::{Given, one_of, word};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, interruptible, packed, preparing, rows};
@@ -17,18 +17,19 @@ use crate::crossing::envelope::{Envelope, Extreme, Ratio, Sense};
 use crate::damping::Damping;
 use crate::error::Error;
 use crate::memory;
+use crate::passage::planned::Course;
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::{Braking, Direction, Drive, Passage};
 use crate::recovery::Recovery;
 use crate::statics::quantity::Quantity;
-use crate::vehicle::Vehicle;
 
 /// A crossing that has been computed; its arrays are made when asked for.
 #[pyclass(frozen, module = "spanwise._core")]
 pub struct Crossing {
     analysis: Arc<Analysis>,
     outcome: analysis::Outcome,
-    vehicles: Vec<Vehicle>,
+    passages: Vec<Passage>,
+    settings: Settings,
 }
 
 /// The kind of response of this name.
@@ -49,32 +50,57 @@ impl Crossing {
         };
         interruptible(py, |stop| self.analysis.envelope_of(&self.outcome, quantity, stop))
     }
+
+    /// Elevations under the axles at every instant, off the lines from which motion is told.
+    fn told(&self, elevations: &mut [f64]) -> Result<(), Error> {
+        let history = &self.outcome.history;
+        let mut first = 0;
+        for (vehicle, passage) in self.passages.iter().enumerate() {
+            let ([higher, steeper], length, direction) = self.drift(vehicle)?;
+            let own = first..first + passage.vehicle.assembly().contacts.len();
+            first = own.end;
+            let rows = elevations.chunks_exact_mut(history.axles).zip(history.positions.chunks_exact(history.axles));
+            for (z, x) in rows.flat_map(|(z, x)| z[own.clone()].iter_mut().zip(&x[own.clone()])) {
+                let way = if direction == Direction::Right { *x } else { length - *x };
+                *z += higher + steeper * way;
+            }
+        }
+        Ok(())
+    }
+
+    /// The line from which the motion of a vehicle is told, of that from which it feels its road: see [`Course::drift`].
+    fn drift(&self, vehicle: usize) -> Result<([f64; 2], f64, Direction), Error> {
+        let Some(passage) = self.passages.get(vehicle) else {
+            let allowed = format!("must be below {}, the number of vehicles", self.passages.len());
+            return Err(Error::input("vehicle", vehicle, allowed));
+        };
+        let length = self.analysis.model.shapes.mesh().length();
+        let course = Course::new(passage, &self.settings, "", 0)?;
+        Ok((course.drift(&self.settings, length), length, passage.direction))
+    }
 }
 
 #[pymethods]
 impl Crossing {
     /// One that has travelled: its bridge, what was asked of it, its vehicles, and its `state`.
     #[staticmethod]
-    #[pyo3(signature = (bridge, vehicles, state, *, modes, damping, damping_matrix, sections, recovery))]
-    #[allow(clippy::too_many_arguments)] // one per argument that Python names
+    #[pyo3(signature = (bridge, passages, conditions, state, *, speed, road))]
     fn received(
         py: Python<'_>,
         bridge: &PyBridge,
-        vehicles: Vec<PyRef<'_, PyVehicle>>,
+        passages: &Bound<'_, PyAny>,
+        conditions: &Bound<'_, PyAny>,
         state: &[u8],
-        modes: usize,
-        damping: Vec<f64>,
-        damping_matrix: Option<PyReadonlyArray2<'_, f64>>,
-        sections: Option<Vec<f64>>,
-        recovery: &str,
+        speed: Option<f64>,
+        road: &PyRoad,
     ) -> PyResult<Self> {
-        let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
-        let vehicles = vehicles.iter().map(|vehicle| vehicle.0.clone()).collect();
+        let (asked, settings) = conditions_of(conditions, speed, road)?;
+        let passages = passages_of(passages)?;
         let read = postcard::from_bytes::<analysis::Outcome>(state);
         let outcome = read.map_err(|e| Error::input("state", format!("{} bytes", state.len()), e.to_string()))?;
         let analysis = interruptible(py, |stop| bridge.0.analysis(asked, stop))?;
         let outcome = analysis.received(outcome)?;
-        Ok(Crossing { analysis, outcome, vehicles })
+        Ok(Crossing { analysis, outcome, passages, settings })
     }
 
     /// All that was computed, as bytes.
@@ -115,6 +141,9 @@ impl Crossing {
         let mut copy = Vec::new();
         memory::reserve(&mut copy, "states", name, values.len())?;
         copy.extend_from_slice(values);
+        if name == "elevations" {
+            self.told(&mut copy)?;
+        }
         rows(py, copy, width)
     }
 
@@ -193,7 +222,7 @@ impl Crossing {
     /// Speed of each vehicle at the end.
     #[getter]
     fn final_speeds(&self) -> Vec<f64> {
-        (0..self.vehicles.len()).map(|v| self.outcome.history.final_speed(v)).collect()
+        (0..self.passages.len()).map(|v| self.outcome.history.final_speed(v)).collect()
     }
 
     /// When each vehicle came to rest, if it did.
@@ -209,14 +238,11 @@ impl Crossing {
     }
 
     /// Heave and pitch of every body of a vehicle, the displacement of the mass of every axle, and the travel, each with
-    /// its first and second derivative, at every instant: told from a line that is lower by `drift` where its way over the
-    /// bridge begins, and by so much more per way than the line from which it feels its road.
-    fn motion<'py>(&self, py: Python<'py>, vehicle: usize, drift: [f64; 2]) -> PyResult<Matrix<'py>> {
+    /// its first and second derivative, at every instant: told from the line of the whole way.
+    fn motion<'py>(&self, py: Python<'py>, vehicle: usize) -> PyResult<Matrix<'py>> {
         let history = &self.outcome.history;
-        let (Some(mover), Some(columns)) = (self.vehicles.get(vehicle), history.vehicles.get(vehicle)) else {
-            let allowed = format!("must be below {}, the number of vehicles", self.vehicles.len());
-            return Err(Error::input("vehicle", vehicle, allowed).into());
-        };
+        let ([higher, steeper], ..) = self.drift(vehicle)?;
+        let (mover, columns) = (&self.passages[vehicle].vehicle, &history.vehicles[vehicle]);
         let assembly = mover.assembly();
         // Of each what gives it from the coordinates, where it is ahead of the centre of mass, and whether it is a pitch.
         let mut lines: Vec<(Option<&DVector<f64>>, f64, bool)> = Vec::new();
@@ -225,7 +251,6 @@ impl Crossing {
         }
         lines.extend(assembly.hops.iter().zip(&assembly.contacts).map(|(hop, c)| (hop.as_ref(), c.position, false)));
         let width = 3 * (lines.len() + 1);
-        let [higher, steeper] = drift;
         let values = interruptible(py, |stop| {
             let mut values = Vec::new();
             memory::reserve(&mut values, "states", "motion", history.len() * width)?;
@@ -276,24 +301,14 @@ impl Crossing {
         ratio: &str,
         mask: f64,
     ) -> PyResult<Vector<'py>> {
-        let sense = match sense {
-            "positive" => Sense::Positive,
-            "negative" => Sense::Negative,
-            "either" => Sense::Either,
-            _ => {
-                let allowed = "must be positive, negative or either";
-                return Err(Error::input("sense", format!("\"{sense}\""), allowed).into());
-            }
-        };
-        let ratio = match ratio {
-            "extremes" => Ratio::Extremes,
-            "at-dynamic-extreme" => Ratio::AtDynamicExtreme,
-            "at-static-extreme" => Ratio::AtStaticExtreme,
-            _ => {
-                let allowed = "must be extremes, at-dynamic-extreme or at-static-extreme";
-                return Err(Error::input("ratio", format!("\"{ratio}\""), allowed).into());
-            }
-        };
+        let senses = [("positive", Sense::Positive), ("negative", Sense::Negative), ("either", Sense::Either)];
+        let sense = one_of("sense", sense, senses)?;
+        let ratios = [
+            ("extremes", Ratio::Extremes),
+            ("at-dynamic-extreme", Ratio::AtDynamicExtreme),
+            ("at-static-extreme", Ratio::AtStaticExtreme),
+        ];
+        let ratio = one_of("ratio", ratio, ratios)?;
         if !(0.0..1.0).contains(&mask) {
             let allowed = "must be a fraction of the largest static value, from 0 to below 1";
             return Err(Error::input("mask", mask, allowed).into());
@@ -302,109 +317,101 @@ impl Crossing {
     }
 }
 
-/// How a vehicle is driven: its name, and the numbers that go with it.
-pub type PyDrive = (String, Vec<f64>, Vec<f64>);
-
-/// Vehicle, speed, drive, direction, entry, lane, road.
-pub type PyPassage<'py> =
-    (PyRef<'py, PyVehicle>, Option<f64>, Option<PyDrive>, String, f64, i64, Option<PyRef<'py, PyRoad>>);
-
-/// A drive as Python names it.
-pub fn drive((name, first, second): PyDrive) -> Result<Drive, Error> {
-    match (name.as_str(), &first[..]) {
-        ("constant-speed", []) => Ok(Drive::ConstantSpeed),
-        ("constant-traction", []) => Ok(Drive::ConstantTraction),
-        ("acceleration", &[acceleration]) => Ok(Drive::Acceleration(acceleration)),
-        ("speeds", _) => Ok(Drive::Speeds { times: first, speeds: second }),
-        ("braking", &[deceleration, from, ramp, adhesion]) => {
-            Ok(Drive::Braking(Braking { deceleration, from, ramp, adhesion }))
-        }
-        _ => Err(Error::input(
-            "drive",
-            format!("\"{name}\""),
-            "must be constant-speed or constant-traction; acceleration, speeds and braking have numbers of their own",
-        )),
+/// A drive: a word, or an object of a kind with the numbers of it.
+fn drive(driven: &Bound<'_, PyAny>) -> PyResult<Drive> {
+    if let Some(name) = word(driven) {
+        let steady = [("constant-speed", Drive::ConstantSpeed), ("constant-traction", Drive::ConstantTraction)];
+        return steady.into_iter().find(|(word, _)| *word == name).map(|(_, drive)| drive).ok_or_else(|| {
+            let allowed = "must be constant-speed or constant-traction; others have numbers of their own";
+            Error::input("drive", format!("\"{name}\""), allowed).into()
+        });
     }
+    let given = Given::new(driven);
+    match given.of::<String>("kind")?.as_str() {
+        "acceleration" => Ok(Drive::Acceleration(given.number("acceleration")?)),
+        "speeds" => Ok(Drive::Speeds { times: given.of("times")?, speeds: given.of("speeds")? }),
+        _ => Ok(Drive::Braking(Braking {
+            deceleration: given.number("deceleration")?,
+            from: given.number("start")?,
+            ramp: given.number("ramp")?,
+            adhesion: given.number("friction")?,
+        })),
+    }
+}
+
+/// Vehicles on their way.
+pub fn passages_of(passages: &Bound<'_, PyAny>) -> PyResult<Vec<Passage>> {
+    passages.try_iter()?.map(|each| passage(&Given::new(&each?))).collect()
 }
 
 /// A vehicle on its way.
-pub fn passage((vehicle, speed, driven, direction, entry, lane, road): PyPassage<'_>) -> Result<Passage, Error> {
-    let direction = match direction.as_str() {
-        "right" => Direction::Right,
-        "left" => Direction::Left,
-        _ => return Err(Error::input("direction", format!("\"{direction}\""), "must be right or left")),
-    };
+fn passage(given: &Given<'_, '_>) -> PyResult<Passage> {
+    let core = |name: &str| given.get(name)?.getattr("_core");
+    let (driven, road) = (given.get("drive")?, given.get("road")?);
+    let directions = [("right", Direction::Right), ("left", Direction::Left)];
     Ok(Passage {
-        vehicle: vehicle.0.clone(),
-        speed,
-        drive: driven.map(drive).transpose()?,
-        direction,
-        entry,
-        lane,
-        road: road.map(|road| Arc::new(road.0.clone())),
+        vehicle: core("vehicle")?.cast::<PyVehicle>()?.get().0.clone(),
+        speed: given.optional("speed")?,
+        drive: (!driven.is_none()).then(|| drive(&driven)).transpose()?,
+        direction: one_of("direction", &given.of::<String>("direction")?, directions)?,
+        entry: given.number("entry")?,
+        lane: given.of("lane_number")?,
+        road: match road.is_none() {
+            true => None,
+            false => Some(Arc::new(core("road")?.cast::<PyRoad>()?.get().0.clone())),
+        },
     })
 }
 
-/// The recovery of this name.
-pub fn recovery_named(name: &str) -> Result<Recovery, Error> {
-    match name {
-        "force-summation" => Ok(Recovery::ForceSummation),
-        "force-summation-by-rates" => Ok(Recovery::ForceSummationByRates),
-        "superposition" => Ok(Recovery::Superposition),
-        _ => {
-            let allowed = "must be force-summation, force-summation-by-rates or superposition";
-            Err(Error::input("recovery", format!("\"{name}\""), allowed))
-        }
-    }
-}
-
-/// Damping by the matrix, if there is one, or else by ratios.
-pub fn damped(ratios: Vec<f64>, matrix: Option<PyReadonlyArray2<'_, f64>>) -> Damping {
-    match matrix {
-        None => Damping::Ratios(ratios),
-        Some(c) => {
-            let c = c.as_array();
-            Damping::Viscous(Mat::from_fn(c.nrows(), c.ncols(), |i, j| c[[i, j]]))
-        }
-    }
+/// What is asked of a bridge, and how vehicles cross it: at this speed, if they have none of their own.
+pub fn conditions_of(conditions: &Bound<'_, PyAny>, speed: Option<f64>, road: &PyRoad) -> PyResult<(Asked, Settings)> {
+    let given = Given::new(conditions);
+    let matrix: Option<PyReadonlyArray2<'_, f64>> = given.of("matrix")?;
+    let damping = match matrix {
+        None => Damping::Ratios(given.of("ratios")?),
+        Some(c) => Damping::Viscous(mat(c)),
+    };
+    let recoveries = [
+        ("force-summation", Recovery::ForceSummation),
+        ("force-summation-by-rates", Recovery::ForceSummationByRates),
+        ("superposition", Recovery::Superposition),
+    ];
+    let recovery = one_of("recovery", &given.of::<String>("recovery")?, recoveries)?;
+    let settings = Settings {
+        speed: speed.unwrap_or(f64::NAN),
+        drive: drive(&given.get("drive")?)?,
+        beta: given.number("beta")?,
+        step: given.optional("step")?,
+        approach: given.number("approach")?,
+        ramp: given.number("ramp")?,
+        tail: given.optional("tail")?.map_or(Tail::Free, Tail::Fixed),
+        gravity: given.number("gravity")?,
+        lift_off: given.of("lift_off")?,
+        road: Arc::new(road.0.clone()),
+    };
+    Ok((Asked::new(given.of("modes")?, damping, given.of("sections")?, recovery), settings))
 }
 
 /// Computes one crossing.
 #[pyfunction]
-#[pyo3(signature = (bridge, passages, *, modes, damping, damping_matrix, beta, step, approach, ramp, tail, gravity,
-                    lift_off, sections, recovery))]
-#[allow(clippy::too_many_arguments)] // one per argument that Python names
-pub fn cross<'py>(
-    py: Python<'py>,
+#[pyo3(signature = (bridge, passages, conditions, *, speed, road))]
+pub fn cross(
+    py: Python<'_>,
     bridge: &PyBridge,
-    passages: Vec<PyPassage<'py>>,
-    modes: usize,
-    damping: Vec<f64>,
-    damping_matrix: Option<PyReadonlyArray2<'py, f64>>,
-    beta: f64,
-    step: Option<f64>,
-    approach: f64,
-    ramp: f64,
-    tail: Option<f64>,
-    gravity: f64,
-    lift_off: bool,
-    sections: Option<Vec<f64>>,
-    recovery: &str,
+    passages: &Bound<'_, PyAny>,
+    conditions: &Bound<'_, PyAny>,
+    speed: Option<f64>,
+    road: &PyRoad,
 ) -> PyResult<Crossing> {
-    let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
-    let passages = passages.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
-    // Every passage says its own speed or brings it with its drive.
-    let tail = tail.map_or(Tail::Free, Tail::Fixed);
-    let settings = Settings { beta, step, approach, ramp, tail, gravity, lift_off, ..Settings::at_speed(f64::NAN) };
+    let (asked, settings) = conditions_of(conditions, speed, road)?;
+    let passages = passages_of(passages)?;
     let solved = Arc::clone(&bridge.0);
     let assemblies = passages.iter().map(|passage| passage.vehicle.assembly());
     let of_vehicles: usize = assemblies.map(|assembly| assembly.coordinates.len() + assembly.contacts.len()).sum();
     let order = solved.order().max(asked.preparation.sections.as_ref().map_or(0, Vec::len)).max(of_vehicles);
-    let (analysis, outcome, passages) = preparing(py, order, move |stop| {
+    preparing(py, order, move |stop| {
         let analysis = solved.analysis(asked, stop)?;
         let outcome = analysis.cross_all(&passages, &settings, stop)?;
-        Ok((analysis, outcome, passages))
-    })?;
-    let vehicles = passages.into_iter().map(|passage| passage.vehicle).collect();
-    Ok(Crossing { analysis, outcome, vehicles })
+        Ok(Crossing { analysis, outcome, passages, settings })
+    })
 }

@@ -10,8 +10,9 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, P
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use super::bridge::{Asked, PyBridge};
-use super::crossing::{PyDrive, PyPassage, damped, drive as driven, passage, quantity, recovery_named};
+use super::bridge::PyBridge;
+use super::crossing::{conditions_of, passages_of, quantity};
+use super::given::Given;
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
@@ -23,19 +24,12 @@ use crate::ensemble::{Plan, Run, Workers, clock};
 use crate::error::Error;
 use crate::memory;
 use crate::passage::Passage;
-use crate::passage::settings::{Settings, Tail};
 use crate::road::patch::Patch;
 use crate::road::random::Synthesis;
 use crate::road::spectrum::Spectrum;
 use crate::statics::quantity::Quantity;
 use crate::stop_token::StopToken;
 use crate::vehicle::Vehicle;
-
-/// Random roads of the samples' own: roughness, waviness, band, contact patch, period, seed.
-type PyOwn = (f64, f64, [f64; 2], f64, f64, u64);
-
-/// Name of the parameter, factors of each sample, and all of them, sample after sample.
-type PyFactors<'py> = (String, usize, PyReadonlyArray1<'py, f64>);
 
 /// What a run of samples leaves.
 #[pyclass(frozen, module = "spanwise._core")]
@@ -251,35 +245,28 @@ fn coordinates(event: &[Passage]) -> usize {
 #[pyfunction]
 pub fn varied<'py>(
     py: Python<'py>,
-    event: Vec<PyPassage<'py>>,
-    factors: Vec<PyFactors<'py>>,
+    event: &Bound<'py, PyAny>,
+    factors: &Bound<'py, PyAny>,
 ) -> PyResult<Vec<PyVehicle>> {
-    let samples = Samples { factors: parameters(factors)?, ..Samples::at_speed(0, 1, 1.0) };
-    let event = event.into_iter().map(passage).collect::<Result<Vec<_>, Error>>()?;
+    let samples = Samples { factors: factors_of(factors)?, ..Samples::at_speed(0, 1, 1.0) };
+    let event = passages_of(event)?;
     let given: Vec<&Vehicle> = event.iter().map(|passage| &passage.vehicle).collect();
     samples.check(&[given])?;
     let vehicles = preparing(py, coordinates(&event), move |_| varied_vehicles(&event, &samples, 0))?;
     Ok(vehicles.into_iter().map(PyVehicle).collect())
 }
 
-/// Static axle loads of all samples [N], a row for each; NaN where the vehicle of a sample cannot be.
+/// Static axle loads of all samples of a plan [N], a row for each, or one where they are all alike; NaN where the vehicle
+/// of a sample cannot be.
 #[pyfunction]
-pub fn static_loads<'py>(
-    py: Python<'py>,
-    kinds: Vec<Vec<PyPassage<'py>>>,
-    kind_of: PyReadonlyArray1<'py, u32>,
-    count: usize,
-    factors: Vec<PyFactors<'py>>,
-    gravity: f64,
-) -> PyResult<Matrix<'py>> {
-    let samples = Samples {
-        count,
-        kinds: kind_of.as_array().to_vec(),
-        factors: parameters(factors)?,
-        ..Samples::at_speed(0, count, 1.0)
+pub fn static_loads<'py>(py: Python<'py>, plan: &Bound<'py, PyAny>, gravity: f64) -> PyResult<Matrix<'py>> {
+    let given = Given::new(plan);
+    let (kinds, all) = (events_of(&given.get("events")?)?, samples_of(&given)?);
+    let samples = match kinds.len() > 1 || all.varies_loads() {
+        true => Samples { speeds: vec![1.0], ..all },
+        false => Samples::at_speed(all.first, 1, 1.0),
     };
-    let all = kinds.into_iter().map(|event| event.into_iter().map(passage).collect());
-    let kinds = all.collect::<Result<Vec<Vec<Passage>>, Error>>()?;
+    let count = samples.count;
     let vehicles = |event: &Vec<Passage>| event.iter().map(|passage| passage.vehicle.clone()).collect::<Vec<_>>();
     let as_given: Vec<Vec<Vehicle>> = kinds.iter().map(vehicles).collect();
     let borrowed: Vec<Vec<&Vehicle>> = as_given.iter().map(|event| event.iter().collect()).collect();
@@ -322,81 +309,90 @@ pub fn fingerprint(digests: PyReadonlyArray1<'_, u64>) -> u64 {
     fingerprint_of(digests.as_array().iter().copied())
 }
 
-fn parameters(factors: Vec<PyFactors<'_>>) -> Result<Vec<Factors>, Error> {
-    let of = |(name, width, values): PyFactors<'_>| {
-        Ok(Factors { parameter: Parameter::named(&name)?, width, values: values.as_array().to_vec() })
-    };
-    factors.into_iter().map(of).collect()
+/// The kinds of event, each of passages.
+fn events_of(events: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<Passage>>> {
+    events.try_iter()?.map(|event| passages_of(&event?)).collect()
 }
 
-/// Computes many crossings.
+/// Factors by parameter, each with rows of numbers.
+fn factors_of(factors: &Bound<'_, PyAny>) -> PyResult<Vec<Factors>> {
+    let of = |each: PyResult<Bound<'_, PyAny>>| {
+        let each = each?;
+        let given = Given::new(&each);
+        let values: PyReadonlyArray2<'_, f64> = given.of("values")?;
+        let values = values.as_array();
+        let parameter = Parameter::named(&given.of::<String>("name")?)?;
+        Ok(Factors { parameter, width: values.ncols(), values: values.iter().copied().collect() })
+    };
+    factors.try_iter()?.map(of).collect()
+}
+
+/// The samples of a plan.
+fn samples_of(plan: &Given<'_, '_>) -> PyResult<Samples> {
+    let kinds: PyReadonlyArray1<'_, u32> = plan.of("kinds")?;
+    let speeds = plan.get("speeds")?;
+    let speeds: PyReadonlyArray1<'_, f64> = Given::new(&speeds).of("column")?;
+    Ok(Samples {
+        first: plan.of("first")?,
+        count: plan.of("samples")?,
+        kinds: kinds.as_array().to_vec(),
+        speeds: speeds.as_array().to_vec(),
+        factors: factors_of(&plan.get("factors")?)?,
+    })
+}
+
+/// Random roads of the samples' own, which are made where there is time.
+struct OwnRoad {
+    spectrum: Spectrum,
+    patch: Patch,
+    period: f64,
+    seed: u64,
+}
+
+impl OwnRoad {
+    fn of(plan: &Given<'_, '_>) -> PyResult<Option<Self>> {
+        let seed = plan.of("seed")?;
+        plan.one("own", |road| {
+            let spectrum = Spectrum::new(road.number("G")?, road.number("waviness")?, road.of("band")?)?;
+            let patch = Patch::new(road.number("contact_patch")?)?;
+            Ok(OwnRoad { spectrum, patch, period: road.number("period")?, seed })
+        })
+    }
+
+    fn made(self) -> Result<(Arc<Synthesis>, u64), Error> {
+        Ok((Arc::new(Synthesis::new(self.spectrum, self.patch, Some(self.period))?), self.seed))
+    }
+}
+
+/// Computes the samples of a plan. Where they share the geometry the speeds that passages bring are among those of the
+/// samples.
 #[pyfunction]
-#[pyo3(signature = (bridge, kinds, *, drive, road, own_road, modes, damping, damping_matrix, beta, step, advance, approach,
-                    ramp, tail, gravity, lift_off, sections, recovery, quantities, first, count, kind_of, speeds, factors,
-                    threads, progress))]
+#[pyo3(signature = (bridge, plan, *, events, speeds, road, quantities, threads, progress))]
 #[allow(clippy::too_many_arguments)] // one per argument that Python names
 pub fn ensemble<'py>(
     py: Python<'py>,
     bridge: &PyBridge,
-    kinds: Vec<Vec<PyPassage<'py>>>,
-    drive: PyDrive,
-    road: &PyRoad,
-    own_road: Option<PyOwn>,
-    modes: usize,
-    damping: Vec<f64>,
-    damping_matrix: Option<PyReadonlyArray2<'py, f64>>,
-    beta: f64,
-    step: Option<f64>,
-    advance: Option<f64>,
-    approach: f64,
-    ramp: f64,
-    tail: Option<f64>,
-    gravity: f64,
-    lift_off: bool,
-    sections: Option<Vec<f64>>,
-    recovery: &str,
-    quantities: Vec<String>,
-    first: u64,
-    count: usize,
-    kind_of: PyReadonlyArray1<'py, u32>,
+    plan: &Bound<'py, PyAny>,
+    events: &Bound<'py, PyAny>,
     speeds: PyReadonlyArray1<'py, f64>,
-    factors: Vec<PyFactors<'py>>,
+    road: &PyRoad,
+    quantities: Vec<String>,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Ensemble> {
     let workers = Workers::new(threads)?;
-    let asked = Asked::new(modes, damped(damping, damping_matrix), sections, recovery_named(recovery)?);
-    let all = kinds.into_iter().map(|passages| passages.into_iter().map(passage).collect());
-    let kinds = all.collect::<Result<Vec<Vec<Passage>>, Error>>()?;
+    let given = Given::new(plan);
+    // Every sample says its own speed.
+    let (asked, settings) = conditions_of(&given.get("conditions")?, None, road)?;
+    let kinds = events_of(events)?;
     let quantities = quantities.iter().map(|name| quantity(name)).collect::<Result<Vec<_>, Error>>()?;
-    let samples = Samples {
-        first,
-        count,
-        kinds: kind_of.as_array().to_vec(),
-        speeds: speeds.as_array().to_vec(),
-        factors: parameters(factors)?,
-    };
-    let settings = Settings {
-        drive: driven(drive)?,
-        beta,
-        step,
-        approach,
-        ramp,
-        tail: tail.map_or(Tail::Free, Tail::Fixed),
-        gravity,
-        lift_off,
-        road: Arc::new(road.0.clone()),
-        // Every sample says its own.
-        ..Settings::at_speed(f64::NAN)
-    };
+    let samples = Samples { speeds: speeds.as_array().to_vec(), ..samples_of(&given)? };
+    let (count, advance, own_road) = (samples.count, given.optional("advance")?, OwnRoad::of(&given)?);
     let started = Instant::now();
     let solved = Arc::clone(&bridge.0);
     let (analysis, shares, quantities, run) = attended(py, count, progress.as_ref(), move |told| {
         let stopped = || told.stop.load(Ordering::Relaxed);
-        let own = own_road.map(|(roughness, waviness, band, patch, period, seed)| {
-            let spectrum = Spectrum::new(roughness, waviness, band)?;
-            Ok::<_, Error>((Arc::new(Synthesis::new(spectrum, Patch::new(patch)?, Some(period))?), seed))
-        });
+        let own = own_road.map(OwnRoad::made);
         let analysis = solved.analysis(asked, StopToken::when(&stopped))?;
         let own = own.transpose()?;
         let study = Plan { analysis, kinds, settings, own, advance, quantities: quantities.clone() }.study()?;

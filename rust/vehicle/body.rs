@@ -109,6 +109,15 @@ pub struct Body {
     pub couplings: Vec<Coupling>,
 }
 
+/// Whether anything acts on a body away from its centre of mass, so that it pitches.
+pub fn pitches(bodies: &[Body], number: usize) -> bool {
+    let own = bodies[number].axles.iter().map(|axle| axle.position);
+    let joints = bodies[number].couplings.iter().map(|coupling| coupling.ends().2);
+    let all = bodies.iter().flat_map(|body| &body.couplings).map(Coupling::ends);
+    let there = all.filter(|&(to, ..)| to == number).map(|(_, at, _)| at);
+    own.chain(joints).chain(there).any(|place| place != 0.0)
+}
+
 /// Friction between two parts, beside a spring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
