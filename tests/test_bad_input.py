@@ -248,7 +248,7 @@ VEHICLES: list[tuple[Callable[..., object], dict[str, Any], tuple[str, ...]]] = 
     (
         front_axle,
         {"mass": 700, "friction_limit": 1e3, "stick_stiffness": 1e7, "leaf_decay": 0.002},
-        ("axles[0].stick_stiffness", "10000000.0", "leaf_decay = 0.002", "one of the two"),
+        ("axles[0].stick_stiffness", "10000000", "leaf_decay = 0.002", "one of the two"),
     ),
     (
         front_axle,

@@ -20,7 +20,10 @@ from spanwise.traffic import Passage
 
 Array: TypeAlias = NDArray[np.float64]
 
-#: What a crossing is computed anew from beside its states.
+#: Conditions that histories depend on beside the states.
+LOOKED = ("modes", "ratios", "matrix", "sections", "recovery")
+
+#: What a crossing is made of again beside its states.
 GIVEN = ("bridge", "passages", "_conditions", "_speed", "_road")
 
 
@@ -86,7 +89,8 @@ class Computed:
     def __eq__(self, other: object) -> bool:
         if type(other) is not Computed:
             return NotImplemented
-        names = (*GIVEN, "_state")
-        return all(same(getattr(self, name), getattr(other, name)) for name in names)
+        states = same((self.bridge, self._state), (other.bridge, other._state))
+        mine, others = self._conditions, other._conditions
+        return states and all(same(getattr(mine, key), getattr(others, key)) for key in LOOKED)
 
     __hash__ = None  # type: ignore[assignment]

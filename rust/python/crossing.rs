@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::bridge::{Asked, PyBridge, mat};
-use super::given::{Given, one_of, word};
+use super::given::{Given, one_of};
 use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, interruptible, packed, preparing, rows};
@@ -319,7 +319,7 @@ impl Crossing {
 
 /// A drive: a word, or an object of a kind with the numbers of it.
 fn drive(driven: &Bound<'_, PyAny>) -> PyResult<Drive> {
-    if let Some(name) = word(driven) {
+    if let Ok(name) = driven.extract::<String>() {
         let steady = [("constant-speed", Drive::ConstantSpeed), ("constant-traction", Drive::ConstantTraction)];
         return steady.into_iter().find(|(word, _)| *word == name).map(|(_, drive)| drive).ok_or_else(|| {
             let allowed = "must be constant-speed or constant-traction; others have numbers of their own";

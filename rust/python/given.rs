@@ -1,7 +1,7 @@
 //! Objects of Python read by attribute; what is no number is refused in the words of Python's own checks.
 
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyString};
+use pyo3::types::PyFloat;
 
 use crate::error::Error;
 
@@ -98,9 +98,4 @@ pub fn one_of<T: Copy, const N: usize>(key: &str, name: &str, words: [(&str, T);
         let (last, others) = all.split_last().map_or(("", &[][..]), |(last, others)| (*last, others));
         Error::input(key, format!("\"{name}\""), format!("must be {} or {last}", others.join(", ")))
     })
-}
-
-/// Whether it is text.
-pub fn word(value: &Bound<'_, PyAny>) -> Option<String> {
-    value.cast::<PyString>().ok().map(|text| text.to_string())
 }
