@@ -203,6 +203,7 @@ impl<'a> Course<'a> {
     /// How much lower than that line the one is from which motion is told, at the end at which the vehicle enters, and how
     /// much more per way. A vehicle feels a measured road from the line of the first 10 m of its way, which leads off the
     /// road in the end: its motion is told from the line of the whole way instead.
+    #[cfg(feature = "python")] // which shows it
     pub fn drift(&self, settings: &Settings, length: f64) -> [f64; 2] {
         let [near, far] = self.road.drift(self.place(-settings.approach, length), self.place(length, length));
         let steeper = (far - near) / (settings.approach + length);

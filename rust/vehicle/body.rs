@@ -110,6 +110,7 @@ pub struct Body {
 }
 
 /// Whether anything acts on a body away from its centre of mass, so that it pitches.
+#[cfg(feature = "python")] // which may leave out the inertia of one that does not
 pub fn pitches(bodies: &[Body], number: usize) -> bool {
     let own = bodies[number].axles.iter().map(|axle| axle.position);
     let joints = bodies[number].couplings.iter().map(|coupling| coupling.ends().2);
