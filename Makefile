@@ -37,7 +37,7 @@ example: $(EXTENSION)
 test: $(EXTENSION)
 	$(CARGO) test $(PROFILE) --locked
 	$(CARGO) run --quiet $(PROFILE) --locked --example speeds
-	$(PY) -m pytest -n auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(PY) -m pytest -n auto --dist worksteal
 
 # Random studies by the thousand, other ones each time; every argument with every odd value.
 soak: $(EXTENSION)

@@ -1,10 +1,17 @@
-"""What several files of tests need to compare an ensemble with crossings one by one."""
+"""What several files of tests need: to compare ensembles with crossings, and to start processes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import IO, TypeAlias
 
 import numpy as np
 import pytest
@@ -86,3 +93,87 @@ def case(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
     path = tmp_path / "case.toml"
     path.write_text(request.module.CASE, encoding="utf-8")
     return path
+
+
+#: Reads what is to be run, runs it in a copy of itself, and tells who that is and how it ended.
+TEMPLATE = """
+import json, os, signal, sys
+import numpy
+import spanwise.cli
+
+for line in sys.stdin:
+    child = os.fork()
+    if child == 0:
+        break
+    print(child, flush=True)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+else:
+    sys.exit()
+program, environment, out, err = json.loads(line)
+os.environ.update(environment)
+for stream, path in enumerate((os.devnull, out, err)):
+    os.dup2(os.open(path, os.O_RDWR), stream)
+signal.alarm(600)
+exec(compile(program, "<program>", "exec"), {"__name__": "__main__"})
+"""
+
+
+@dataclass
+class Started:
+    """A program under way in a process of its own."""
+
+    template: IO[str]
+    pid: int
+    out: Path
+    err: Path
+    code: int | None = None
+
+    def wait(self) -> subprocess.CompletedProcess[str]:
+        if self.code is None:
+            self.code = int(self.template.readline())
+        out, err = (path.read_text(encoding="utf-8") for path in (self.out, self.err))
+        return subprocess.CompletedProcess("", self.code, out, err)
+
+
+Start: TypeAlias = Callable[..., Started]
+
+
+@pytest.fixture(scope="session")
+def template() -> Iterator[tuple[IO[str], IO[str]]]:
+    """A process that has imported the package, to be copied: its two pipes."""
+    process = subprocess.Popen(
+        [sys.executable, "-W", "ignore", "-c", TEMPLATE],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+    )
+    with process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        yield process.stdin, process.stdout
+
+
+@pytest.fixture
+def start(
+    template: tuple[IO[str], IO[str]], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Start]:
+    """Runs a program in such a copy, which takes a twentieth of what a start with imports takes."""
+    told, heard = template
+    all_started = []
+
+    def started(program: str, **environment: str) -> Started:
+        folder = tmp_path_factory.mktemp("process")
+        out, err = folder / "out", folder / "err"
+        for path in (out, err):
+            path.touch()
+        job = (textwrap.dedent(program), environment, str(out), str(err))
+        print(json.dumps(job), file=told, flush=True)
+        all_started.append(Started(heard, int(heard.readline()), out, err))
+        return all_started[-1]
+
+    yield started
+    for each in all_started:
+        if each.code is None:
+            os.kill(each.pid, signal.SIGKILL)
+            each.wait()

@@ -7,8 +7,8 @@ import os
 import signal
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -496,7 +496,7 @@ def test_standard_output_that_is_full(case: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
-def test_interrupt(case: Path) -> None:
+def test_interrupt(case: Path, start: Any) -> None:
     # A crossing of seconds, interrupted by the process itself soon after it has begun.
     slow = CASE.replace("5e-3", "1e-6").replace("modes = 3", "modes = 6")
     case.write_text(slow, encoding="utf-8")
@@ -509,8 +509,7 @@ def test_interrupt(case: Path) -> None:
         threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         sys.exit(main(["cross", {str(case)!r}, "--json", {str(case.parent / "run.json")!r}]))
     """
-    command = [sys.executable, "-c", textwrap.dedent(program)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    done = start(program).wait()
     assert done.stderr == "spanwise: interrupted\n"
     assert done.returncode == 128 + signal.SIGINT
     assert left(case.parent) == set()

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 import sys
-import textwrap
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -268,7 +267,7 @@ def test_command_refuses(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ")
-def test_command_interrupted(case: Path) -> None:
+def test_command_interrupted(case: Path, start: Any) -> None:
     program = f"""
         import os, signal, sys, threading
         from spanwise.cli import main
@@ -278,8 +277,7 @@ def test_command_interrupted(case: Path) -> None:
         sys.exit(main(["ensemble", {str(case)!r}, "--samples", "200000",
                        "--out", {str(case.parent / "run.npz")!r}]))
     """
-    command = [sys.executable, "-c", textwrap.dedent(program)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    done = start(program).wait()
     assert done.stderr == "spanwise: interrupted\n"
     assert done.returncode == 128 + signal.SIGINT
     assert [path.name for path in case.parent.iterdir()] == ["case.toml"]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
-import textwrap
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,7 +12,7 @@ import pytest
 LIMIT = 2_000_000_000
 
 FRAME = """
-    import resource, sys
+    import resource
     import numpy as np
     import spanwise as sw
     bridge = sw.Bridge(spans=[18.0, 18.0], EI=2e9, mass=6e3, stations_per_span=3)
@@ -21,7 +21,7 @@ FRAME = """
     loads, behind = np.full(200, 1e4), -2.0 * np.arange(200)
     def many(sections):
         return np.linspace(0.0, 36.0, sections)
-    resource.setrlimit(getattr(resource, sys.argv[1]), (int(sys.argv[2]), int(sys.argv[2])))
+    resource.setrlimit(resource.{limit}, ({size}, {size}))
     try:
         {what}
     except (ValueError, MemoryError) as error:
@@ -62,25 +62,28 @@ ASKED = [
     ("sw.ISO8608('A').elevation(np.zeros(15 * 10**6))", "InputError x = "),
     ("sw.ensemble(bridge, truck, samples=4, threads=4096, advance=0.1, **given)", ""),
     (
-        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.2, quantities=['moment'], "
-        "**given); e.to_npz(sys.argv[3])",
+        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.5, approach=0.0, beta=0.25, "
+        "quantities=['moment'], "
+        "**given); e.to_npz(PATH)",
         None,
     ),
 ]
 
 
-def asked(what: str, limit: str, size: int, path: str) -> str:
-    program = textwrap.dedent(FRAME).format(what=what)
-    command = [sys.executable, "-W", "ignore", "-c", program, limit, str(size), path]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+def asked(start: Any, what: str, limit: str, path: Path) -> str:
+    program = FRAME.format(what=what.replace("PATH", repr(str(path))), limit=limit, size=LIMIT)
+    done = start(program).wait()
     assert done.returncode == 0, (done.returncode, done.stderr[-2000:])
-    return done.stdout
+    told: str = done.stdout
+    return told
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits are Linux's")
 @pytest.mark.parametrize(("what", "refusal"), ASKED)
-def test_within_a_limit_nothing_aborts(what: str, refusal: str | None, tmp_path: object) -> None:
-    told = asked(what, "RLIMIT_AS", LIMIT, f"{tmp_path}/all.npz")
+def test_within_a_limit_nothing_aborts(
+    what: str, refusal: str | None, start: Any, tmp_path: Path
+) -> None:
+    told = asked(start, what, "RLIMIT_AS", tmp_path / "all.npz")
     if refusal is None:
         # Some systems have more room left than others.
         assert told.startswith(("came through", "InputError", "MemoryError")), told
@@ -89,7 +92,7 @@ def test_within_a_limit_nothing_aborts(what: str, refusal: str | None, tmp_path:
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits are Linux's")
-def test_the_limit_of_data_counts_too(tmp_path: object) -> None:
+def test_the_limit_of_data_counts_too(start: Any, tmp_path: Path) -> None:
     what, refusal = ASKED[0]
     assert refusal
-    assert asked(what, "RLIMIT_DATA", LIMIT, str(tmp_path)).startswith(refusal)
+    assert asked(start, what, "RLIMIT_DATA", tmp_path).startswith(refusal)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import textwrap
 from typing import Any
@@ -80,32 +79,24 @@ HASH = sw.ensemble(
 ).hash
 
 
-def limited(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Runs a program in a process with an environment of its own."""
-    before = """
-        import resource
-        import spanwise as sw
+#: What the programs below begin with.
+BEFORE = """
+    import resource
+    import spanwise as sw
 
-        bridge = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)
-        truck = sw.vehicles.kishan_1973()
+    bridge = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)
+    truck = sw.vehicles.kishan_1973()
 
-        def run(**more):
-            return sw.ensemble(bridge, truck, samples=100, speed=20.0, damping=0.02, **more)
-    """
-    text = textwrap.dedent(before) + textwrap.dedent(program)
-    return subprocess.run(
-        [sys.executable, "-c", text],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1", **environment},
-    )
+    def run(**more):
+        return sw.ensemble(bridge, truck, samples=100, speed=20.0, damping=0.02, **more)
+"""
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no copies of processes")
 @pytest.mark.parametrize("stack", ["0", "1", str(2**40), str(2**64 - 1), "much"])
-def test_the_environment_does_not_size_stacks(stack: str) -> None:
-    done = limited("print(run().hash, run(threads=4096).hash)", RUST_MIN_STACK=stack)
+def test_the_environment_does_not_size_stacks(start: Any, stack: str) -> None:
+    program = textwrap.dedent(BEFORE) + "print(run().hash, run(threads=4096).hash)"
+    done = start(program, RUST_MIN_STACK=stack).wait()
     assert done.stderr == ""
     assert done.stdout == f"{HASH} {HASH}\n"
 
@@ -120,9 +111,10 @@ FEW = """
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits differ")
-def test_where_no_thread_starts_that_is_said() -> None:
+def test_where_no_thread_starts_that_is_said(start: Any) -> None:
     program = (
-        FEW.format(most=0)
+        BEFORE
+        + FEW.format(most=0)
         + """
     for threads in (None, 1, 4):
         try:
@@ -133,13 +125,13 @@ def test_where_no_thread_starts_that_is_said() -> None:
     sw.cross(bridge, truck, speed=20.0, damping=0.02)
     """
     )
-    done = limited(program)
+    done = start(program).wait()
     assert done.stderr == ""
     assert done.stdout.count("no thread can be started: ") == 3
 
 
 @pytest.mark.skipif(sys.platform != "linux" or os.getuid() != 0, reason="limits by user")
-def test_fewer_threads_do_the_same() -> None:
-    done = limited("if True:" + FEW.format(most=3) + "\n    print(run(threads=8).hash)")
+def test_fewer_threads_do_the_same(start: Any) -> None:
+    done = start(BEFORE + FEW.format(most=3) + "\n    print(run(threads=8).hash)").wait()
     assert done.stderr == ""
     assert done.stdout == f"{HASH}\n"

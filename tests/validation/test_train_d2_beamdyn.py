@@ -105,24 +105,18 @@ def test_frequencies_and_static_values() -> None:
 
 
 @pytest.mark.parametrize("speed", DEFLECTIONS)
-def test_deflections(speed: int) -> None:
-    found = crossing(float(speed)).envelope("deflection").max.value.max()
-    assert 1e3 * found == pytest.approx(DEFLECTIONS[speed], rel=2e-4)
-
-
-@pytest.mark.parametrize("speed", ACCELERATIONS)
-def test_accelerations(speed: int) -> None:
-    envelope = crossing(float(speed)).envelope("acceleration")
-    found = max(envelope.max.value.max(), -envelope.min.value.min())
-    assert found == pytest.approx(ACCELERATIONS[speed], rel=1e-3)
-
-
-@pytest.mark.parametrize("speed", MOMENTS)
-def test_moments(speed: int) -> None:
-    found = crossing(float(speed)).envelope("moment").max.value.max() / 1e6
-    exact, printed = MOMENTS[speed]
-    assert found == pytest.approx(exact, rel=1e-3)
-    assert found == pytest.approx(printed, rel=8e-3)
+def test_extremes(speed: int) -> None:
+    run = crossing(float(speed))
+    deflection = run.envelope("deflection").max.value.max()
+    assert 1e3 * deflection == pytest.approx(DEFLECTIONS[speed], rel=2e-4)
+    envelope = run.envelope("acceleration")
+    acceleration = max(envelope.max.value.max(), -envelope.min.value.min())
+    assert acceleration == pytest.approx(ACCELERATIONS[speed], rel=1e-3)
+    if speed in MOMENTS:
+        exact, printed = MOMENTS[speed]
+        moment = run.envelope("moment").max.value.max() / 1e6
+        assert moment == pytest.approx(exact, rel=1e-3)
+        assert moment == pytest.approx(printed, rel=8e-3)
 
 
 def test_it_resonates_where_wagons_keep_time_with_the_beam() -> None:
