@@ -25,6 +25,7 @@ PARAMETERS: Final[dict[str, Any]] = {
     "ramp": 10.0,
     "speed": 22.86,
     "advance": 0.02286,
+    "beta": 1.0 / 6.0,
     "seed": 7,
 }
 

@@ -17,7 +17,7 @@ use crate::bridge::cubics::{COINCIDENT, Line, MAX_STATIONS, Mesh};
 use crate::bridge::support::Support;
 use crate::damping::{Damping, ModalDamping};
 use crate::error::{Error, finite, positive};
-use crate::modal_bridge::narrowest_panel;
+use crate::modal_bridge::shortest_span;
 use crate::modes::Modes;
 use crate::recovery::ModalFactors;
 use crate::statics::influence::Responses;
@@ -201,17 +201,12 @@ impl Given {
         Ok(&self.responses.lines()[self.responses.range(quantity).start + i])
     }
 
-    /// Narrowest distance between neighbouring masses, supports and ends [m].
-    pub fn narrowest_panel(&self) -> f64 {
-        let mut points: Vec<f64> = self.masses().map(|m| m.0).collect();
-        points.extend(self.supports.iter().map(|s| s.at));
-        points.extend([0.0, self.mesh.length()]);
-        points.sort_by(f64::total_cmp);
-        let near = COINCIDENT * self.mesh.length();
+    /// Shortest distance between neighbouring supports and ends [m].
+    pub fn shortest_span(&self) -> f64 {
         let mut bounds: Vec<f64> = self.supports.iter().map(|s| s.at).collect();
         bounds.extend([0.0, self.mesh.length()]);
         bounds.sort_by(f64::total_cmp);
-        narrowest_panel(&points, &bounds, near).min(self.mesh.length())
+        shortest_span(&bounds)
     }
 }
 

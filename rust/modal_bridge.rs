@@ -13,9 +13,6 @@ use crate::vehicle::body::Suspension;
 /// Jump of a slope, relative to the steepest, from which on it is a kink and not rounding.
 const KINK: f64 = 1e-6;
 
-/// How many times as wide as a panel the others of its span may be before it is passed over.
-const SLIVER: f64 = 4.0;
-
 /// The bridge in modal coordinates, ready to be crossed.
 #[derive(Debug, Clone)]
 pub struct ModalBridge {
@@ -25,8 +22,8 @@ pub struct ModalBridge {
     pub shapes: ModeShapes,
     /// Their damping.
     pub damping: ModalDamping,
-    /// Narrowest distance between neighbouring stations, supports and ends [m].
-    pub narrowest_panel: f64,
+    /// Shortest distance between neighbouring supports and ends [m].
+    pub shortest_span: f64,
 }
 
 impl ModalBridge {
@@ -38,16 +35,11 @@ impl ModalBridge {
         lines: &[Line],
         damping: &Damping,
     ) -> Result<Self, Error> {
-        let mut points: Vec<f64> = bridge.span_bounds().to_vec();
-        points.extend(bridge.stations().iter().map(|s| s.at));
-        points.sort_by(f64::total_cmp);
-        let near = COINCIDENT * bridge.length();
-        let narrowest = narrowest_panel(&points, bridge.span_bounds(), near);
         Ok(ModalBridge {
             omega: modes.omega.clone(),
             shapes: ModeShapes::new(flexibility.mesh(), lines),
             damping: damping.modal(modes)?,
-            narrowest_panel: narrowest.min(bridge.length()),
+            shortest_span: shortest_span(bridge.span_bounds()),
         })
     }
 
@@ -145,17 +137,9 @@ impl ModeShapes {
     }
 }
 
-/// Narrowest panel of those that `points`, ascending, make of the spans between `bounds` [m]. None counts as narrower than a
-/// quarter of the mean of its span: influence lines are exact and an axle on a section is an instant of its own, so that a
-/// mass close beside a station does not ask for shorter steps all the way. Equal shares have halves at the supports.
-pub fn narrowest_panel(points: &[f64], bounds: &[f64], near: f64) -> f64 {
-    let widths = |from: f64, to: f64| {
-        let inside = points.windows(2).filter(move |p| p[0] > from - near && p[1] < to + near);
-        inside.map(|p| p[1] - p[0]).filter(move |&w| w > near)
-    };
-    let spans = bounds.windows(2).map(|ends| {
-        let least = (ends[1] - ends[0]) / widths(ends[0], ends[1]).count() as f64 / SLIVER;
-        widths(ends[0], ends[1]).map(|w| w.max(least)).fold(f64::INFINITY, f64::min)
-    });
-    spans.fold(f64::INFINITY, f64::min)
+/// Shortest of the spans between these bounds, ascending [m].
+pub fn shortest_span(bounds: &[f64]) -> f64 {
+    let near = COINCIDENT * (bounds[bounds.len() - 1] - bounds[0]);
+    let spans = bounds.windows(2).map(|ends| ends[1] - ends[0]);
+    spans.filter(|&span| span > near).fold(f64::INFINITY, f64::min)
 }

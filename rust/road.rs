@@ -2,7 +2,8 @@
 //!
 //! x runs from the left end of the bridge, negative on the left approach; elevation is positive up. A road is a sum of
 //! [`random`] roads after ISO 8608 ([`spectrum`]), measured [`profile`]s and single [`feature`]s, each averaged over
-//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness. A vehicle feels it from the [`datum`] of
+//! the contact [`patch`] of a tyre; the [`golden_car`] measures its roughness, its [`texture`] tells
+//! what time steps have to resolve. A vehicle feels it from the [`datum`] of
 //! its way. Random roads are made by [`philox`], [`turn`], [`fft`] and [`b_spline`], with the same bits on every
 //! machine.
 
@@ -17,6 +18,7 @@ pub(crate) mod point;
 pub(crate) mod profile;
 pub(crate) mod random;
 pub(crate) mod spectrum;
+pub(crate) mod texture;
 
 pub use feature::Feature;
 pub use fft::InverseFft;
@@ -26,6 +28,7 @@ pub use point::Point;
 pub use profile::Profile;
 pub use random::Synthesis;
 pub use spectrum::{Class, Spectrum};
+pub use texture::Texture;
 pub mod turn;
 
 use std::sync::Arc;
@@ -235,12 +238,15 @@ impl Road {
         })
     }
 
-    /// The shortest edge or contact patch of its features [m]: what a time step must resolve.
-    pub fn finest(&self) -> f64 {
-        self.parts.iter().fold(f64::INFINITY, |least, part| match part {
-            Part::Feature(feature) => least.min(feature.finest()),
-            Part::Random(_) | Part::Profile(_) | Part::Datum(_) => least,
-        })
+    /// How rough it is.
+    pub fn texture(&self) -> Texture {
+        let of = |part: &Part| match part {
+            Part::Random(random) => random.texture(),
+            Part::Profile(profile) => profile.texture(),
+            Part::Feature(feature) => Texture { finest: feature.finest(), ..Texture::SMOOTH },
+            Part::Datum(_) => Texture::SMOOTH,
+        };
+        self.parts.iter().map(of).fold(Texture::SMOOTH, Texture::with)
     }
 
     /// The x that the road is known for [m]; infinite where nothing was measured.

@@ -43,7 +43,7 @@ impl Passing {
     #[inline]
     pub fn new(positions: &impl Positions, step: usize, axle: usize, (mark, at): (usize, f64)) -> Self {
         let (from, to) = (positions.x(step - 1, axle), positions.x(step, axle));
-        let fraction = (at - from) / (to - from);
+        let fraction = ((at - from) / (to - from)).min(1.0);
         Passing { step, axle, mark, fraction, position: positions.between(step, fraction, 0) }
     }
 
@@ -63,6 +63,11 @@ impl Passing {
             position,
         })
     }
+}
+
+/// By how much rounding may leave an axle short of a mark that it has come to [m].
+pub fn short_of(positions: &impl Positions, axle: usize, at: f64) -> f64 {
+    1e-12 * (at - positions.x(0, axle)).abs()
 }
 
 /// Stops of a passing.
@@ -167,7 +172,8 @@ impl PassingAxles {
             while *passed < marks.len() {
                 let mark = if right { *passed } else { marks.len() - 1 - *passed };
                 let at = marks[mark].x;
-                if if right { at > to } else { at < to } {
+                let short = short_of(positions, axle, at);
+                if if right { at - short > to } else { at + short < to } {
                     break;
                 }
                 *passed += 1;

@@ -44,7 +44,7 @@ fn waves() -> Road {
 /// Extremes of a quantity in steps of so many millimetres, largest then smallest, speed after speed.
 fn extremes(quantity: Quantity, advance: f64) -> Vec<f64> {
     let vehicle = half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE);
-    let settings = Settings { approach: 12.0, road: Arc::new(waves()), ..Settings::at_speed(1.0) };
+    let settings = Settings { approach: 12.0, road: Arc::new(waves()), beta: 1.0 / 6.0, ..Settings::at_speed(1.0) };
     let kinds = vec![vec![Passage::of(vehicle)]];
     let study = study_of(analysis(41, 0.01), kinds, settings, None, Some(advance), &[quantity]).unwrap();
     let speeds: Vec<f64> = vec![13.0, 17.0, 21.0, 26.0, 29.0, 33.0];

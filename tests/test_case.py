@@ -122,6 +122,7 @@ def test_every_argument_is_a_key() -> None:
         "tail": "0.1",
         "sections": "[9.0, 18.0]",
         "recovery": '"superposition"',
+        "accuracy": "1e-4",
         "step": "0.001",
         "beta": "0.25",
         "gravity": "9.8",

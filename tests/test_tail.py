@@ -142,7 +142,7 @@ def test_above_the_critical_speed() -> None:
 def test_without_damping_it_ends_in_the_end() -> None:
     run = sw.cross(BRIDGE, TRUCK, speed=22.86, modes=3, damping=0.0)
     assert not run.settled
-    assert run.tail == pytest.approx(10.0 / run.frequencies[0], abs=0.05)
+    assert 0.0 <= run.tail - 10.0 / run.frequencies[0] <= 32.0 * run.time[1]
     assert "ten periods" in run.summary()
 
 

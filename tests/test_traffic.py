@@ -102,7 +102,7 @@ def test_convoys(headway: Any) -> None:
 def test_speeds_in_time() -> None:
     # 10 m/s, from 1 s to 2 s growing to 20 m/s: 10, then 10 + 15 m, then 20 m/s.
     drive = sw.Speeds(times=[1.0, 2.0], speeds=[10.0, 20.0])
-    run = sw.cross(BRIDGE, TRUCK, drive=drive, modes=2)
+    run = sw.cross(BRIDGE, TRUCK, drive=drive, modes=2, step=1e-3)
     assert "speed" not in run.settings
     front = run.vehicle.axle_positions[:, 0]
     for t, x, v in ((0.5, 5.0, 10.0), (1.0, 10.0, 10.0), (2.0, 25.0, 20.0), (2.5, 35.0, 20.0)):

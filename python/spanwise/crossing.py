@@ -10,7 +10,7 @@ import numpy as np
 from spanwise import _core
 from spanwise._checks import shown
 from spanwise._computed import Computed
-from spanwise._conditions import Conditions, Crossing, Recovery
+from spanwise._conditions import FOX_GOODWIN, Conditions, Crossing, Recovery
 from spanwise._keys import alike, suggesting
 from spanwise._plausible import doubts
 from spanwise._remarks import remarks
@@ -42,8 +42,9 @@ def cross(
     tail: float | None = None,
     sections: Sequence[float] | None = None,
     recovery: Recovery = "force-summation",
+    accuracy: float = 1e-3,
     step: float | None = None,
-    beta: float = 1.0 / 6.0,
+    beta: float = FOX_GOODWIN,
     gravity: float = GRAVITY,
     lift_off: bool = True,
     mask: float = 0.05,
@@ -95,13 +96,17 @@ def cross(
         How responses follow from the included modes: by force summation with the inertia and
         damping forces from the coordinates (Eq. 11 of [1]_) or from their rates (Eq. 6), or by
         plain superposition of the modes (Eq. 2).
+    accuracy : float, optional
+        What extremes may be off because time goes in steps, in parts of the largest of each
+        response along the bridge: the step follows from it, by the frequencies of bridge and
+        vehicles, the spans and how rough the road is. docs/theory.md, "Time step", tells how, how
+        far it was tried, and where it does not hold (accelerations of the deck, damped tyres that
+        meet a lively bridge, very rough roads).
     step : float, optional
-        Longest time step [s]. By default a twentieth of the shortest coupled period, the time in
-        which the fastest vehicle passes a hundredth of the narrowest panel or, on an uneven road,
-        50 mm or half of its shortest edge and contact patch, whichever is least. Panels narrower
-        than a quarter of the mean of their span count as that.
+        Longest time step [s], in place of the one that follows.
     beta : float, optional
-        Newmark's beta: 1/6 for linear, 1/4 for constant average acceleration.
+        Newmark's beta: 1/12 for the least error (default), 1/6 for linear, 1/4 for constant average
+        acceleration.
     gravity : float, optional
         Gravity [m/s2].
     lift_off : bool, optional

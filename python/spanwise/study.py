@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from spanwise import _core
 from spanwise._checks import count
-from spanwise._conditions import Recovery
+from spanwise._conditions import FOX_GOODWIN, Recovery
 from spanwise._events import is_simple, speeds_by_kind
 from spanwise._keys import suggesting
 from spanwise._plan_of_arguments import Asked, plan_of
@@ -55,9 +55,10 @@ def ensemble(
     sections: Sequence[float] | None = None,
     quantities: Sequence[str] | None = None,
     recovery: Recovery = "force-summation",
+    accuracy: float = 1e-3,
     advance: float | None = None,
     step: float | None = None,
-    beta: float = 1.0 / 6.0,
+    beta: float = FOX_GOODWIN,
     gravity: float = GRAVITY,
     lift_off: bool = True,
     mask: float = 0.05,
@@ -109,7 +110,7 @@ def ensemble(
         The same in absolute values, in the unit of the attribute of `Vehicle`, `Body` or `Axle`:
         masses [kg] (loads [N] of a train of forces), inertias [kg m2], stiffnesses [N/m], dampings
         [N s/m], friction [N]. They must not be multiples of nothing. Not for the bridge.
-    modes, drive, damping, approach, ramp, tail, recovery, beta, gravity, lift_off, mask
+    modes, drive, damping, approach, ramp, tail, recovery, accuracy, beta, gravity, lift_off, mask
         As for `cross`; by default the tail of each sample is as long as it needs, for the
         quantities and sections looked at.
     sections : sequence of float, optional

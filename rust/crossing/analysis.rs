@@ -155,7 +155,7 @@ impl Preparation {
             omega: modes.omega.clone(),
             shapes: ModeShapes::new(given.mesh(), &lines),
             damping: given.damping(&modes, damping)?,
-            narrowest_panel: given.narrowest_panel(),
+            shortest_span: given.shortest_span(),
         };
         let source = Source { preparation: self.clone(), subject: Subject::Given(given.clone(), chosen), lines };
         Ok(Analysis::new(Arc::new(source), sections, modes, model, responses, given.missing().to_vec()))

@@ -12,7 +12,7 @@ use crate::float_mode::Standard;
 use crate::geometry::pavement::Pavement;
 use crate::passage::planned::Course;
 use crate::passage::settings::{Settings, Tail};
-use crate::passage::step_length::{MAX_STEPS, Steps};
+use crate::passage::step_length::{Fineness, MAX_STEPS, MOST_HALVINGS, Steps};
 use crate::passage::{Direction, Drive, Passage};
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
@@ -21,9 +21,6 @@ use crate::stop_token::StopToken;
 use crate::vehicle::body::BuildUp;
 use crate::vehicle::equations::ContactLaw;
 use crate::vehicle::{MAX_AXLES, Vehicle};
-
-/// Halvings of the step that a sample may ask for.
-const MOST_HALVINGS: u32 = 16;
 
 /// One kind of event: a vehicle, or several, on their way.
 #[derive(Debug, Clone)]
@@ -197,11 +194,6 @@ impl Study {
         Ok(())
     }
 
-    /// Whether the road is level throughout.
-    pub(super) fn is_even(&self) -> bool {
-        self.own.is_none() && self.settings.road.is_smooth()
-    }
-
     /// The vehicles of every kind.
     pub(super) fn vehicles(&self) -> Vec<Vec<&Vehicle>> {
         self.kinds.iter().map(|kind| kind.passages.iter().map(|p| &p.vehicle).collect()).collect()
@@ -232,11 +224,14 @@ impl Study {
         let model = &self.analysis.model;
         let vehicle = self.vehicle(kind);
         let path = self.settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
-        let longest = self
-            .advance
-            .unwrap_or_else(|| Steps::longest_way(model.narrowest_panel, !self.is_even(), self.settings.road.finest()));
-        let steps = (path / longest - 1e-9).ceil().max(1.0);
-        (steps as usize, path / steps)
+        let longest = self.advance.unwrap_or_else(|| {
+            let mut road = self.settings.road.texture();
+            if let Some((own, _)) = &self.own {
+                road = road.with(own.texture());
+            }
+            Fineness::of(&self.settings).way(model.shortest_span, road, vehicle.assembly())
+        });
+        Steps::in_space(path, longest)
     }
 
     /// How the axles of a kind move whose step is halved so many times.
@@ -269,7 +264,7 @@ impl Study {
     /// How often the step of each sample must be halved: a function of the sample alone. Samples that would take too many
     /// steps are told, in order.
     pub(super) fn marches(&self, samples: &Samples) -> (Vec<March>, Vec<Failure>) {
-        let beta = self.settings.beta;
+        let (beta, fineness) = (self.settings.beta, Fineness::of(&self.settings));
         // Squared frequencies of bridge, vehicle and tyres on the bridge, of each kind as it is.
         let model = &self.analysis.model;
         let fastest: Vec<[f64; 3]> =
@@ -303,24 +298,18 @@ impl Study {
             let longest = match (self.settings.step, self.advance) {
                 (Some(step), _) => step.min(limit),
                 (None, Some(_)) => limit,
-                (None, None) => Steps::resolving(fastest).min(limit),
+                (None, None) => fineness.step(fastest).min(limit),
             };
             let speed = samples.speed(sample, 0);
-            let (steps, mut way) = plans[kind];
-            let mut halvings = 0;
-            // Where one step just fits, rounding does not halve it.
-            while way > longest * speed * (1.0 + 1e-9) && halvings <= MOST_HALVINGS {
-                way *= 0.5;
-                halvings += 1;
-            }
+            let (steps, way) = plans[kind];
+            let (times, halvings) = Steps::halved(way, longest * speed);
+            let way = way / times;
             let tail = self.settings.tail.seconds().unwrap_or(0.0);
-            let count = (steps as f64) * f64::from(1u32 << halvings.min(30)) + tail * speed / way;
+            let count = (steps as f64) * times + tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
-                let usual = way > Steps::resolving(fastest).min(limit) * speed;
+                let usual = way > fineness.step(fastest).min(limit) * speed;
                 let (key, value) = match self.settings.step {
-                    _ if steps as f64 * f64::from(1u32 << halvings.min(30)) < 0.5 * count => {
-                        ("tail".to_string(), format!("{tail} s"))
-                    }
+                    _ if steps as f64 * times < 0.5 * count => ("tail".to_string(), format!("{tail} s")),
                     Some(step) if !usual => ("step".to_string(), format!("{step} s")),
                     _ => match samples.farthest(sample) {
                         Some((name, factor)) => (format!("factors['{name}']"), factor.to_string()),

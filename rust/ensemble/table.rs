@@ -13,7 +13,7 @@ use crate::recovery::{Place, Rows};
 use crate::road::b_spline::Taps;
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
-use crate::stops::{Passing, PassingInfluence, Positions, Stop};
+use crate::stops::{Passing, PassingInfluence, Positions, Stop, short_of};
 use crate::tape::{CHUNK, PART, PARTS};
 
 /// The step of a chunk of so many that is looked at first.
@@ -303,10 +303,10 @@ pub fn passings(path: &Advance, marks: &[f64]) -> Vec<Passing> {
     for axle in 0..path.behind.len() {
         for (mark, &at) in marks.iter().enumerate() {
             // The first step at whose end the axle is not before the mark; where it starts it does not pass.
-            let (mut step, mut end) = (0, last + 1);
+            let (mut step, mut end, near) = (0, last + 1, at - short_of(path, axle, at));
             while step < end {
                 let middle = step + (end - step) / 2;
-                if path.x(middle, axle) < at { step = middle + 1 } else { end = middle }
+                if path.x(middle, axle) < near { step = middle + 1 } else { end = middle }
             }
             if step == 0 || step > last {
                 continue;

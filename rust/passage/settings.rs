@@ -8,6 +8,17 @@ use crate::passage::motion::reasonable;
 use crate::road::Road;
 use crate::vehicle::STANDARD_GRAVITY;
 
+/// Newmark's β of the least error, 1/12: of an undamped vibration its period then is off by the fourth power of the step
+/// and not by the second (L. Fox and E. T. Goodwin, Proc. Cambridge Phil. Soc. 45, 1949).
+pub const FOX_GOODWIN: f64 = 1.0 / 12.0;
+
+/// Accuracy of the extremes unless the user asks for another [-].
+pub const ACCURACY: f64 = 1e-3;
+
+/// The finest that can be asked for, and the coarsest [-].
+const FINEST: f64 = 1e-8;
+const COARSEST: f64 = 0.1;
+
 /// How much free vibration is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tail {
@@ -37,9 +48,11 @@ pub struct Settings {
     pub drive: Drive,
     /// Newmark's β, from 1/12 to 1/2 [-].
     pub beta: f64,
-    /// Longest time step [s]; shortened so that a whole number of steps spans the crossing. By default a twentieth of the
-    /// shortest coupled period, a hundredth of the narrowest panel or, on an uneven road, 50 mm of way, whichever takes
-    /// less time.
+    /// What the extremes may be off because time goes in steps, in parts of the largest of each response along the bridge
+    /// [-]: the length of a step follows from it, see [`crate::passage::step_length`].
+    pub accuracy: f64,
+    /// Longest time step [s], in place of the one that follows; shortened so that a whole number of steps spans the
+    /// crossing.
     pub step: Option<f64>,
     /// Approach in front of the bridge [m].
     pub approach: f64,
@@ -62,7 +75,8 @@ impl Settings {
         Settings {
             speed,
             drive: Drive::ConstantSpeed,
-            beta: 1.0 / 6.0,
+            beta: FOX_GOODWIN,
+            accuracy: ACCURACY,
             step: None,
             approach: 0.0,
             ramp: 0.0,
@@ -85,6 +99,10 @@ impl Settings {
             not_negative("tail", tail)?;
         }
         reasonable("gravity", positive("gravity", self.gravity)?, "m/s2")?;
+        if !(self.accuracy >= FINEST && self.accuracy <= COARSEST) {
+            let allowed = format!("must be from {FINEST:e} to {COARSEST}, in parts of the largest of each response");
+            return Err(Error::input("accuracy", self.accuracy, allowed));
+        }
         if let Some(step) = self.step {
             positive("step", step)?;
         }
@@ -92,7 +110,7 @@ impl Settings {
             return Err(Error::input(
                 "beta",
                 self.beta,
-                "must be from 1/12 to 1/2 (1/6 linear, 1/4 average acceleration)",
+                "must be from 1/12 to 1/2 (1/12 the least error, 1/6 linear, 1/4 average acceleration)",
             ));
         }
         Ok(())

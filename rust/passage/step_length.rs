@@ -1,30 +1,70 @@
 //! How long the steps of a crossing are, and how many.
+//!
+//! A step is as long as the accuracy asked for allows. Three errors grow with its square, and each asks for its own limit:
+//!
+//! - **Extremes are looked for at the ends of steps**, and at the instants at which an axle is on a section. A vibration of
+//!   circular frequency ω that peaks between two of them is missed by (ωh)²/8 of itself at most. What vibrates fastest and
+//!   matters is, on the bridge, the highest included mode, coupled with the tyres; hence the limit [`PHASE`]/ω.
+//! - **Vehicles hop on a rough road**, the more the rougher it is: their part in the responses grows with the slopes of
+//!   the road as the contact patch leaves them, so that the way of a step may be the longer, the less they are
+//!   ([`ROUGH`]). Where the way is a matter of time, as at low speed, the first limit is the shorter one. Edges of
+//!   single features have a limit of their own.
+//! - **Newmark's method makes periods longer**: by (β − 1/12)(ωh)²/2 in parts, which for β = 1/12 is nothing but a term of
+//!   fourth order ([`FOX_GOODWIN`](crate::passage::settings::FOX_GOODWIN)). Over the few periods that a vehicle's or a
+//!   bridge's dampers leave ([`PERIODS`]) that is an error of phase, added to the first.
+//!
+//! Panels of the bridge have no say: influence lines are exact at any position. The constants come from comparing with steps
+//! an eighth as long, over the catalogue, bridges and road classes: see the table of accuracy in the documentation. What
+//! converges more slowly is told there: tyres with dampers, whose force jumps as an axle meets the slope of the deflected
+//! bridge ([`JUMPS`]), and wheels that drop on or off a free end.
 
 use crate::error::Error;
 use crate::memory::{self, Promise};
 use crate::modal_bridge::ModalBridge;
 use crate::passage::planned::Course;
-use crate::passage::settings::{Settings, Tail};
+use crate::passage::settings::{FOX_GOODWIN, Settings, Tail};
+use crate::road::Texture;
 use crate::step::vibration::most_steps;
+use crate::vehicle::equations::{Assembly, ContactLaw};
 
 /// Most steps of one crossing: a mistyped step or speed is told before it takes all memory.
 pub const MAX_STEPS: usize = 2_000_000;
 
+/// Halvings of the step that a sample may ask for.
+pub const MOST_HALVINGS: u32 = 16;
+
 /// Most memory that the states of one crossing may take [bytes].
 const MAX_HISTORY_BYTES: f64 = 4e9;
 
-/// Steps to the shortest coupled period unless the user gives a step.
-const STEPS_PER_PERIOD: f64 = 20.0;
+/// Accuracy for which the limits below are stated.
+const STATED: f64 = 1e-3;
 
-/// Steps to the narrowest panel unless the user gives a step.
-const STEPS_PER_PANEL: f64 = 100.0;
+/// Circular frequency of the fastest coupled vibration times step [-].
+const PHASE: f64 = 0.3;
+
+/// Steps to the shortest span.
+const STEPS_PER_SPAN: f64 = 100.0;
+
+/// Way per step on a road whose slopes have the root mean square [`SLOPE`] [m].
+const ROUGH: f64 = 0.05;
+
+/// Slopes between those of class A, 0.0028, and of class B, 0.0056, under the usual contact patch [-].
+const SLOPE: f64 = 4e-3;
+
+/// Way per step on the roughest roads that vehicles cross [m].
+const ROUGHEST: f64 = 0.005;
+
+/// Way per step of tyres with dampers and of masses without tyres, on whatever road [m].
+const JUMPS: f64 = 0.025;
+
+/// Wave number times way per step of masses without tyres: (2πn·way)²/8 of a wave is missed at most [-].
+const RIGID: f64 = 0.09;
+
+/// Periods over which an error of the period adds up.
+const PERIODS: f64 = 2.4;
 
 /// Speed below which it is the speed that makes a crossing long [m/s].
 const SLOW: f64 = 0.1;
-
-/// Way in front of an axle that the road's unevenness needs at most in one step unless the user gives a step [m]: a fifth
-/// of the shortest wave that is usual.
-const WAY_PER_STEP: f64 = 0.05;
 
 /// Steps of a crossing.
 pub struct Steps {
@@ -47,13 +87,16 @@ impl Steps {
         let length = model.shapes.mesh().length();
         let fastest = model.fastest_frequency(courses.iter().map(|course| course.vehicle));
         let limit = if settings.beta < 0.25 { 1.0 / (fastest * (0.25 - settings.beta).sqrt()) } else { f64::INFINITY };
-        let resolved = Steps::resolving(fastest);
-        let uneven = courses.iter().any(|course| !course.road.is_smooth());
+        let fineness = Fineness::of(settings);
+        let resolved = fineness.step(fastest);
         let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
         let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
-        let finest = courses.iter().map(|course| course.road.finest()).fold(f64::INFINITY, f64::min);
-        let way = Steps::longest_way(model.narrowest_panel, uneven, finest);
-        let usual = resolved.min(way / speed);
+        let way = |course: &Course<'_>| {
+            let (road, vehicle) = (&course.road, course.vehicle.assembly());
+            fineness.way(model.shortest_span, road.texture(), vehicle)
+        };
+        let way = courses.iter().map(way).fold(f64::INFINITY, f64::min);
+        let usual = resolved.min(way / speed).min(limit);
         let longest = settings.step.unwrap_or(usual);
         if longest > limit {
             let frequency = fastest / std::f64::consts::TAU;
@@ -68,7 +111,15 @@ impl Steps {
             return Err(Error::input("speed", "0 m/s for good, before the end", allowed));
         }
         // A path of a whole number of steps is not given one more because of rounding.
-        let count = (span / longest - 1e-9).ceil().max(1.0);
+        let mut count = (span / longest - 1e-9).ceil().max(1.0);
+        if let [course] = courses
+            && course.is_steady()
+            && settings.step.is_none()
+        {
+            // As samples side by side, so that by default a sample is a crossing.
+            let (steps, way) = Steps::in_space(course.path(settings, length), way);
+            count = count.max(steps as f64 * Steps::halved(way, usual * speed).0);
+        }
         let tail = settings.tail.seconds().unwrap_or(0.0);
         let steps = count + tail / longest;
         let (modes, axles) = (model.omega.len(), courses.iter().map(|course| course.behind.len()).sum::<usize>());
@@ -100,10 +151,10 @@ impl Steps {
             let mut allowed = format!("the crossing would take {steps:.3e} steps, at most {MAX_STEPS} are allowed");
             if settings.step.is_none() {
                 allowed += &format!(
-                    " (the default step is {longest:.3e} s, for a narrowest panel of {:.3e} m and a shortest period of \
-                     {:.3e} s; give step to choose another)",
-                    model.narrowest_panel,
-                    std::f64::consts::TAU / fastest
+                    " (a step of {longest:.3e} s, for a way of {way:.3e} m and a shortest period of {:.3e} s, follows from \
+                     accuracy = {}; give another, or a step)",
+                    std::f64::consts::TAU / fastest,
+                    settings.accuracy
                 );
             }
             return Err(Error::input(key, value, allowed));
@@ -131,6 +182,25 @@ impl Steps {
     }
 }
 
+impl Steps {
+    /// How many steps of a way at most [m] a path takes, and the way of each.
+    pub fn in_space(path: f64, longest: f64) -> (usize, f64) {
+        let steps = (path / longest - 1e-9).ceil().max(1.0);
+        (steps as usize, path / steps)
+    }
+
+    /// How many steps there are for one of this way [m], halved until none is longer than `most` [m], and how often it is.
+    pub fn halved(mut way: f64, most: f64) -> (f64, u32) {
+        let mut halvings = 0;
+        // Where one step just fits, rounding does not halve it.
+        while way > most * (1.0 + 1e-9) && halvings <= MOST_HALVINGS {
+            way *= 0.5;
+            halvings += 1;
+        }
+        (f64::from(halvings).exp2(), halvings)
+    }
+}
+
 /// Bytes of a step: a row of the history, and one of the table of mode shapes and road under the axles.
 pub fn bytes(modes: usize, axles: usize, coordinates: usize, frictions: usize) -> f64 {
     (size_of::<f64>() * (1 + 3 * coordinates + frictions + 3 * modes + 8 * axles + 3 * modes * axles)) as f64
@@ -141,17 +211,44 @@ pub fn room(count: f64, bytes: f64) -> f64 {
     (MAX_STEPS as f64 - count).min(MAX_HISTORY_BYTES / bytes - count).max(0.0)
 }
 
-impl Steps {
-    /// Longest step that resolves vibrations up to this circular frequency [rad/s], unless the user gives one [s].
-    pub fn resolving(fastest: f64) -> f64 {
-        std::f64::consts::TAU / fastest / STEPS_PER_PERIOD
+/// What the length of a step follows from, but for the speed.
+#[derive(Debug, Clone, Copy)]
+pub struct Fineness {
+    /// How much longer than stated steps may be.
+    scale: f64,
+}
+
+impl Fineness {
+    /// Of the settings.
+    pub fn of(settings: &Settings) -> Self {
+        // Half a sampling error (ωh)²/8 to begin with; then the phase 2π·periods·(β − 1/12)(ωh)²/2 beside it.
+        let beside = 8.0 * std::f64::consts::PI * PERIODS * (settings.beta - FOX_GOODWIN).max(0.0);
+        Fineness { scale: (settings.accuracy / STATED / (1.0 + beside)).sqrt() }
     }
 
-    /// Longest way per step unless the user gives a step [m]: for panels this narrow and, if the road is uneven, features
-    /// this fine.
-    pub fn longest_way(narrowest_panel: f64, uneven: bool, finest: f64) -> f64 {
-        let way = narrowest_panel / STEPS_PER_PANEL;
-        if uneven { way.min(WAY_PER_STEP).min(0.5 * finest) } else { way }
+    /// Longest step that resolves vibrations up to this circular frequency [rad/s] [s].
+    pub fn step(&self, fastest: f64) -> f64 {
+        self.scale * PHASE / fastest
+    }
+
+    /// Longest way per step [m] of a vehicle over these spans on a road. Forces do not feel it, and masses that roll on it
+    /// without tyres feel every wave.
+    pub fn way(&self, shortest_span: f64, road: Texture, vehicle: &Assembly) -> f64 {
+        let laws = || vehicle.contacts.iter().map(|contact| contact.law);
+        let mut way = shortest_span / STEPS_PER_SPAN;
+        if laws().all(|law| law == ContactLaw::Force) {
+            return self.scale * way;
+        }
+        if road.slope_power > 0.0 {
+            way = way.min((ROUGH * (SLOPE / road.slope_power.sqrt()).sqrt()).max(ROUGHEST));
+        }
+        if laws().any(|law| !law.is_plain()) {
+            way = way.min(JUMPS);
+        }
+        if laws().any(|law| matches!(law, ContactLaw::Mass(_))) {
+            way = way.min(RIGID / (std::f64::consts::TAU * road.highest));
+        }
+        self.scale * way.min(0.5 * road.finest)
     }
 }
 

@@ -381,6 +381,7 @@ pub fn conditions_of(conditions: &Bound<'_, PyAny>, speed: Option<f64>, road: &P
         speed: speed.unwrap_or(f64::NAN),
         drive: drive(&given.get("drive")?)?,
         beta: given.number("beta")?,
+        accuracy: given.number("accuracy")?,
         step: given.optional("step")?,
         approach: given.number("approach")?,
         ramp: given.number("ramp")?,

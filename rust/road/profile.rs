@@ -7,6 +7,7 @@
 
 use super::patch::{Curve, Patch};
 use super::point::Point;
+use super::texture::Texture;
 use crate::error::{Error, finite, positive};
 use crate::float_mode::Standard;
 use crate::memory;
@@ -20,6 +21,9 @@ const GAP: f64 = 5.0;
 
 /// Numbers for each point while the spline is made, twelve at most, and what is kept of them [bytes].
 const POINT: usize = 12 * size_of::<f64>();
+
+/// Places at which the slope of a profile is looked at.
+const SLOPES: usize = 1024;
 
 /// Part of a section that must be measured as finely as its spacing says.
 const MOST_OF_IT: f64 = 0.9;
@@ -35,6 +39,7 @@ pub struct Profile {
     /// Integral of the elevation from the first point to each [m²].
     integrals: Vec<f64>,
     patch: Patch,
+    texture: Texture,
 }
 
 impl Profile {
@@ -68,12 +73,28 @@ impl Profile {
             let area = h * (a + h * (b / 2.0 + h * (c / 3.0 + h * d / 4.0)));
             integrals.push(integrals[integrals.len() - 1] + area);
         }
-        Profile { x, base, cubics, integrals, patch }
+        Profile { x, base, cubics, integrals, patch, texture: Texture::SMOOTH }.measured()
+    }
+
+    /// With its texture worked out: slopes off their mean at some places evenly along it, and its finest points.
+    fn measured(mut self) -> Self {
+        let [from, to] = self.ends();
+        let slope = |i: usize| self.at(from + (to - from) * (i as f64 + 0.5) / SLOPES as f64).slope;
+        let slopes: Vec<f64> = (0..SLOPES).map(slope).collect();
+        let mean = slopes.iter().sum::<f64>() / SLOPES as f64;
+        let slope_power = slopes.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>() / SLOPES as f64;
+        self.texture = Texture { slope_power, highest: 0.5 / self.spacing(from, to), ..Texture::SMOOTH };
+        self
+    }
+
+    /// How rough it is.
+    pub fn texture(&self) -> Texture {
+        self.texture
     }
 
     /// The same under another contact patch.
     pub fn under(&self, patch: Patch) -> Self {
-        Profile { patch, ..self.clone() }
+        Profile { patch, ..self.clone() }.measured()
     }
 
     /// The straight lines from point to point under a contact patch, from elevation 0 on.

@@ -23,6 +23,7 @@ use super::patch::Patch;
 use super::philox::{philox4x32_lanes, words};
 use super::point::Point;
 use super::spectrum::Spectrum;
+use super::texture::Texture;
 use super::turn::{sin_cos, sin_cos_of_words, sinc};
 use crate::error::{Error, positive};
 use crate::float_mode::Standard;
@@ -109,6 +110,11 @@ impl Synthesis {
         2 * self.fft.points()
     }
 
+    /// How rough its roads are.
+    pub fn texture(&self) -> Texture {
+        self.spectrum.texture(self.patch.length())
+    }
+
     /// The road of a seed and a sample number: a function of these alone.
     pub fn road(&self, seed: u64, sample: u64) -> Random {
         let _mode = Standard::set();
@@ -186,6 +192,11 @@ impl Random {
     /// The same road under another contact patch.
     pub fn under(&self, patch: Patch) -> Result<Self, Error> {
         Ok(Synthesis::new(self.spectrum, patch, Some(self.period()))?.road(self.seed, self.sample))
+    }
+
+    /// How rough such roads are.
+    pub fn texture(&self) -> Texture {
+        self.spectrum.texture(self.patch.length())
     }
 
     /// Its highest wave number [cycle/m].

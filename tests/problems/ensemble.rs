@@ -74,7 +74,7 @@ pub fn analysis_of(
 
 /// A rough approach of 30 m.
 pub fn approach() -> Settings {
-    Settings { approach: 30.0, ramp: 10.0, ..Settings::at_speed(SPEED) }
+    Settings { approach: 30.0, ramp: 10.0, beta: 1.0 / 6.0, ..Settings::at_speed(SPEED) }
 }
 
 /// All that can be said of a study.
