@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -492,7 +491,7 @@ def test_a_notebook_shows_the_figure_without_pyplot(two_spans: Scene) -> None:
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 
-def test_plots_need_neither_pyplot_nor_matplotlib_until_drawn() -> None:
+def test_plots_need_neither_pyplot_nor_matplotlib_until_drawn(start: Any) -> None:
     script = """
 import sys
 import spanwise as sw
@@ -501,7 +500,8 @@ assert "matplotlib" not in sys.modules, "imported before anything is drawn"
 plot.model()
 assert "matplotlib.pyplot" not in sys.modules, "pyplot is imported"
 """
-    subprocess.run([sys.executable, "-c", script], check=True)
+    done = start(script).wait()
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 class Refusing:
