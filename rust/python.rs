@@ -187,7 +187,7 @@ mod _core {
     #[pymodule_export]
     use super::crossing::{Crossing, cross};
     #[pymodule_export]
-    use super::ensemble::{Clock, Ensemble, ensemble, fingerprint, static_loads, varied};
+    use super::ensemble::{Clock, Ensemble, check_samples, ensemble, fingerprint, static_loads, varied};
     #[pymodule_export]
     use super::road::{PyRoad, road_classes};
     #[pymodule_export]

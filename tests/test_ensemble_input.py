@@ -29,6 +29,7 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
     (TRUCK, {"speed": [20.0]}, ValueError, "speed = shape (1,): must be a number or of shape (3,)"),
     (TRUCK, {"speed": [20.0, -1.0, 0.0]}, ValueError, "speed[1] = -1: must be finite and greater"),
     (TRUCK, {"speed": [20.0, np.nan, 1.0]}, ValueError, "speed[1] = nan: must be finite"),
+    ([PASSAGE, LEFT], {"speed": [[9, 8], [9, -8], [9, 8]]}, ValueError, "speed[1, 1] = -8: must"),
     (TRUCK, {"speed": "fast"}, ValueError, "speed = 'fast': must be a number or an array"),
     (TRUCK, {"speed": 0.0}, ValueError, "must be finite and greater than 0"),
     (
@@ -77,8 +78,19 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         "factors['body_mass'] = 2 factors a sample: must be one for each sample, for the event "
         "has one body",
     ),
-    (TRUCK, {"factors": {"body_mass": -1.0}}, ValueError, "body_mass = -1: a factor must be"),
-    (TRUCK, {"factors": {"body_mass": [1, 0, 1]}}, ValueError, "body_mass[1] = 0: a factor must"),
+    (
+        TRUCK,
+        {"factors": {"body_mass": -1.0}},
+        ValueError,
+        "factors['body_mass'] = -1: must be finite",
+    ),
+    (TRUCK, {"factors": {"body_mass": [1, 0, 1]}}, ValueError, "factors['body_mass'][1] = 0: must"),
+    (
+        TRUCK,
+        {"factors": {"tyre_stiffness": [[1, 1], [1, 0], [1, 1]]}},
+        ValueError,
+        "factors['tyre_stiffness'][1, 1] = 0: must be finite and greater than 0",
+    ),
     (
         TRUCK,
         {"factors": {"body_mass": "heavy"}},
@@ -112,7 +124,13 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         ValueError,
         "axle 1 has no friction_limit, so that initial_friction cannot be set by values",
     ),
-    (TRUCK, {"values": {"body_mass": -5.0}}, ValueError, "values['body_mass'] = -5: must not be"),
+    (
+        TRUCK,
+        {"values": {"body_mass": -5.0}},
+        ValueError,
+        "values['body_mass'] = -5: must be finite",
+    ),
+    (TRUCK, {"values": {"tyre_damping": -5.0}}, ValueError, "tyre_damping'] = -5: must be finite"),
     (
         TRUCK,
         {"values": {"tyre_stiffness": np.ones((3, 3))}},
@@ -130,7 +148,13 @@ REFUSED: list[tuple[Any, dict[str, Any], type[Exception], str]] = [
         [PASSAGE, sw.Passage(vehicle=TRAIN, direction="left")],
         {"factors": {"body_mass": np.ones((3, 4))}},
         ValueError,
-        "body_mass: vehicles and trains in one event have no common parts",
+        "factors['body_mass'] = 4 factors a sample: vehicles and trains in one event have no",
+    ),
+    (
+        [PASSAGE, sw.Passage(vehicle=TRAIN, direction="left")],
+        {"values": {"body_mass": 1e4}},
+        ValueError,
+        "values['body_mass'] = 1 values a sample: vehicles and trains in one event have no",
     ),
     (
         TRUCK,

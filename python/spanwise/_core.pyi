@@ -16,6 +16,7 @@ __all__ = [
     "Vehicle",
     "__version__",
     "articulated_5_axle",
+    "check_samples",
     "cl_625",
     "cross",
     "ensemble",
@@ -325,6 +326,14 @@ class Clock:
     @staticmethod
     def joined(clocks: list[Clock]) -> tuple[Clock, list[list[int]]]: ...
 
+def check_samples(
+    events: Sequence[Sequence[_Passage]],
+    *,
+    samples: int,
+    speeds: _Array,
+    factors: Sequence[_Factors],
+    values: Sequence[_Factors],
+) -> None: ...
 def varied(event: Sequence[_Passage], factors: Sequence[_Factors]) -> list[Vehicle]: ...
 def static_loads(plan: _Plan, gravity: float) -> _Array: ...
 def fingerprint(digests: NDArray[np.uint64]) -> int: ...

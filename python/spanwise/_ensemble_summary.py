@@ -91,7 +91,7 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
         yield from _own_roads(event)
     if len(plan.events) > SHOWN:
         yield f"          and {len(plan.events) - SHOWN} kinds more"
-    if ensemble.speed is not None and plan.speeds.column.size > 0:
+    if ensemble.speed is not None:
         drive = plain_drive(plan.drive)
         name = drive if isinstance(drive, str) else drive["kind"]
         yield f"          {_span(plan.speeds.column, 'g')} m/s, {name}"

@@ -73,9 +73,9 @@ def _by_sample(ensemble: Ensemble) -> Iterator[Column]:
     plan, count = ensemble._plan, ensemble.samples
     if len(plan.events) > 1:
         yield "kind", plan.kinds.astype(np.int64)
-    yield from _spread("speed", plan.speeds_of_all)
-    for each in plan.factors:
-        yield from _spread(each.name, np.broadcast_to(each.values, (count, each.values.shape[1])))
+    varied = {"speed": plan.speeds_driven, **{each.name: each.values for each in plan.factors}}
+    for name, values in varied.items():
+        yield from _spread(name, np.broadcast_to(values, (count, values.shape[1])))
     failed = np.zeros(count, dtype=np.bool_)
     failed[[each.row for each in ensemble.failures]] = True
     yield "failed", failed

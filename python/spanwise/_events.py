@@ -103,10 +103,9 @@ def kind_column(kind: object, events: Sequence[Event], samples: int) -> NDArray[
         raise InputError(
             "kind", f"shape {kinds.shape}", f"must be one number for each of the {samples} samples"
         )
-    wrong = np.flatnonzero((kinds < 0) | (kinds >= len(events)))
-    if len(wrong) > 0:
-        i = int(wrong[0])
-        raise InputError(f"kind[{i}]", kinds[i], f"must be from 0 to {len(events) - 1}")
+    # As numbers without sign some others would be in range.
+    wrong = (kinds < 0) | (kinds >= len(events))
+    refuse_where(wrong, "kind", kinds, f"must be from 0 to {len(events) - 1}")
     return kinds.astype(np.uint32) if len(events) > 1 else np.zeros(0, dtype=np.uint32)
 
 
@@ -129,12 +128,17 @@ class Speeds(Value):
         """Shape (sample, 1) or (sample, vehicle); one row where it is the same for all."""
         return self.column.reshape(1 if len(self.column) == 1 else samples, -1)
 
-    def of(self, sample: int, vehicle: int, samples: int) -> float:
-        """Of a vehicle of a sample that has none of its own."""
-        if len(self.column) == 1:
-            return float(self.column[0])
-        own = self.column.reshape(samples, -1)[sample]
-        return float(own[vehicle if len(own) > 1 else 0])
+    def driven(
+        self, events: Sequence[Event], kinds: NDArray[np.uint32], samples: int, drive: Drive
+    ) -> Array:
+        """With those that passages have of their own; NaN by time, and of no vehicle."""
+        used = _used(events, drive)
+        brought = np.full(used.shape, np.nan)
+        for number, event in enumerate(events):
+            speeds = [np.nan if each.speed is None else each.speed for each in event]
+            brought[number, : len(event)] = speeds
+        of = kinds if len(events) > 1 else slice(None)
+        return np.where(used[of], self.rows(samples), brought[of])
 
 
 def speeds_of(speed: object, events: Sequence[Event], samples: int) -> Speeds:
@@ -149,7 +153,6 @@ def speeds_of(speed: object, events: Sequence[Event], samples: int) -> Speeds:
     if values.shape not in allowed and values.shape != (samples, 1):
         shapes = " or ".join(map(str, allowed))
         raise InputError("speed", f"shape {values.shape}", f"must be a number or of shape {shapes}")
-    refuse_where(~(values > 0.0), "speed", values, "must be finite and greater than 0")
     return Speeds(values, np.ascontiguousarray(values).ravel())
 
 
@@ -229,16 +232,3 @@ def is_simple(event: Event, drive: Drive) -> bool:
     (passage,) = event
     plain = passage.direction == "right" and passage.entry == 0.0 and passage.road is None
     return plain and (passage.drive or drive) == "constant-speed"
-
-
-def speeds_by_kind(
-    speeds: Speeds, events: Sequence[Event], kinds: NDArray[np.uint32], samples: int
-) -> Speeds:
-    """The speeds with those that simple events bring put in their places."""
-    if len(events) == 1:
-        own = events[0][0].speed
-        return speeds if own is None else Speeds(speeds.given, np.array([own]))
-    if all(passage.speed is None for (passage,) in events):
-        return speeds
-    brought = np.array([np.nan if each.speed is None else each.speed for (each,) in events])[kinds]
-    return Speeds(speeds.given, np.where(np.isnan(brought), speeds.column, brought))

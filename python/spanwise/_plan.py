@@ -15,7 +15,7 @@ from spanwise._conditions import Conditions, Settings
 from spanwise._events import Event, Speeds, is_simple
 from spanwise._plausible import doubts
 from spanwise._rows import Rows
-from spanwise._value import Value
+from spanwise._value import Value, same
 from spanwise._variation import Factors, idle
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
@@ -24,7 +24,6 @@ from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.runs import Run
 from spanwise.traffic import Drive
-from spanwise.traffic import Speeds as SpeedsInTime
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Vehicle, bodies_of
 from spanwise.vehicles import AnyVehicle
@@ -73,40 +72,21 @@ class Plan(Value):
     @property
     def alike(self) -> bool:
         """Whether all samples are the same crossing."""
-        varied = [each.values for each in self.factors]
-        for passage in self.event(0):
-            if passage.speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
-                varied.append(self.speeds.rows(self.samples))
-        constant = all((each == each[:1]).all() for each in varied)
+        varied = [self.speeds_driven, *(each.values for each in self.factors)]
+        constant = all(same(each, np.broadcast_to(each[:1], each.shape)) for each in varied)
         return self.own is None and len(np.unique(self.kinds)) < 2 and constant
 
     @property
     def front_speeds(self) -> Array:
         """Speeds of the first vehicles at the start [m/s]: of each sample, or of all."""
-        own = [event[0].speed for event in self.events]
-        if len(own) == 1 and own[0] is not None:
-            return np.array([own[0]])
-        column = self.speeds.column
-        if len(column) > 1:
-            column = self.speeds.rows(self.samples)[:, 0]
-        if all(each is None for each in own):
-            return np.ascontiguousarray(column)
-        by_kind = np.array([np.nan if each is None else each for each in own])[self.kinds]
-        return np.where(np.isnan(by_kind), column, by_kind)
+        column = self.speeds_driven[:, 0]
+        # Of one speed for all the core makes more in common.
+        return np.ascontiguousarray(column[:1] if (column == column[0]).all() else column)
 
     @property
-    def speeds_of_all(self) -> Array:
-        """Speeds at the start [m/s], shape (sample, 1) or (sample, vehicle); NaN if by time."""
-        vehicles = max(map(len, self.events))
-        found = np.broadcast_to(self.speeds.rows(self.samples), (self.samples, vehicles)).copy()
-        for number, event in enumerate(self.events):
-            rows = self.kinds == number if len(self.events) > 1 else slice(None)
-            for k in range(vehicles):
-                if k >= len(event) or isinstance(event[k].drive or self.drive, SpeedsInTime):
-                    found[rows, k] = np.nan
-                elif event[k].speed is not None:
-                    found[rows, k] = event[k].speed
-        return found
+    def speeds_driven(self) -> Array:
+        """Speeds at the start [m/s], (1 or sample, vehicle); NaN by time, and of no vehicle."""
+        return self.speeds.driven(self.events, self.kinds, self.samples, self.drive)
 
     def static_loads(self) -> Array:
         """Static axle loads [N], shape (axle,), or (sample, axle) where samples differ in them."""
@@ -162,19 +142,14 @@ class Plan(Value):
 
         Each vehicle at the highest of its speeds at the start.
         """
-        speeds = self.speeds.rows(self.samples)
-        if len(self.events) == 1:
-            most = speeds.max(axis=0, keepdims=True)
-        else:
-            most = np.zeros((len(self.events), speeds.shape[1]))
-            np.maximum.at(most, self.kinds, speeds)
+        speeds = self.speeds_driven
+        most = np.zeros((len(self.events), speeds.shape[1]))
+        np.maximum.at(most, self.kinds if len(self.kinds) else np.zeros(len(speeds), int), speeds)
 
         def fastest(kind: int, event: Event) -> Event:
-            # One for all of its vehicles, or one for each and for those of events with more.
-            given = most[kind].tolist() * (len(event) if most.shape[1] == 1 else 1)
             return tuple(
-                replace(each, speed=speed) if each.speed is None and speed > 0.0 else each
-                for each, speed in zip(event, given, strict=False)
+                replace(each, speed=speed) if speed > 0.0 else each
+                for each, speed in zip(event, most[kind].tolist(), strict=False)
             )
 
         for kind, event in enumerate(self.events):
@@ -195,18 +170,18 @@ class Plan(Value):
         """The sample by a crossing of its own, with this tail [s] if that was not given."""
         passages = []
         vehicles = self.vehicles(sample)
-        for number, (passage, vehicle) in enumerate(zip(self.event(sample), vehicles, strict=True)):
-            speed = passage.speed
-            if speed is None and not isinstance(passage.drive or self.drive, SpeedsInTime):
-                speed = self.speeds.of(sample, number, self.samples)
+        driven = self.speeds_driven
+        speeds = driven[sample if len(driven) > 1 else 0].tolist()
+        for passage, vehicle, speed in zip(self.event(sample), vehicles, speeds, strict=False):
+            # By time there is none.
+            speed = None if np.isnan(speed) else speed
             passages.append(replace(passage, vehicle=vehicle, speed=speed))
         of_all = self.conditions
         given: dict[str, Any] = {each.name: getattr(of_all, each.name) for each in fields(Settings)}
         given["damping"] = of_all.ratios if of_all.matrix is None else of_all.matrix
         if given["tail"] is None:
             given["tail"] = tail
-        speeds = self.front_speeds
-        found = rows.step(sample, float(speeds[sample if len(speeds) > 1 else 0]))
+        found = rows.step(sample, speeds[0])
         if found is not None:
             given["step"] = found[0]
         bridge = self._bridge(sample, given)
@@ -239,6 +214,7 @@ class Plan(Value):
                 f"has a bridge {stiffness:g} times as stiff, and one given by its flexibility "
                 "or its modes cannot be made stiffer; give that bridge to cross",
             )
+        # The core varies modes of a bridge; a run has a whole bridge, to be asked for anything.
         arguments = self.bridge.arguments
         return Bridge(
             **{

@@ -20,7 +20,7 @@ from spanwise._events import (
     speeds_told,
 )
 from spanwise._plan import Plan
-from spanwise._variation import by_parameter, factors_of, refuse_overdamped
+from spanwise._variation import by_parameter, factors_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
 from spanwise.errors import refused
@@ -81,15 +81,14 @@ def plan_of(bridge: Bridge, vehicle: object, asked: Asked) -> tuple[Plan, Speeds
     samples, driven = asked.samples, asked.drive
     kinds = kind_column(asked.kind, events, samples)
     speeds = speeds_of(asked.speed, events, samples)
-    check_speed(events, None if asked.speed is None else float(speeds.column[:1].sum()), driven)
+    check_speed(events, None if asked.speed is None else float(speeds.column[0]), driven)
     refuse_unused(speeds, events, driven)
     shared, own = own_road(surface, events, asked.own_roads)
-    varied = factors_of(asked.factors, asked.values, events, kinds, samples)
+    varied = factors_of(asked.factors, asked.values, events, kinds, speeds.column, samples)
     uneven = own is not None or not all(
         (each.road or shared).is_smooth for event in events for each in event
     )
     conditions = Conditions.filled(bridge, asked, uneven=uneven)
-    refuse_overdamped(varied, conditions.ratios, asked.first)
     looked_at = _quantities(bridge, asked.quantities)
     told = speeds_told(speeds, events, kinds, samples, driven)
     settings: dict[str, Any] = {

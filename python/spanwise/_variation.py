@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spanwise import _core
 from spanwise._build import Place, check_known
-from spanwise._checks import array, refuse_where
+from spanwise._checks import array
 from spanwise._events import Event
 from spanwise._table import listed
 from spanwise._value import Value
 from spanwise.errors import InputError, refused
-from spanwise.trains import ForceTrain, MovingMasses
+from spanwise.trains import ForceTrain
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
 
@@ -48,9 +49,6 @@ OF_SUSPENSIONS: Final = (
 OF_BODIES: Final = ("body_mass", "pitch_inertia")
 OF_BRIDGES: Final = tuple(name for name, attribute in ATTRIBUTES.items() if attribute is None)
 
-#: Parameters that vehicles cannot do without.
-ABOVE_ZERO: Final = ("body_mass", "pitch_inertia", "tyre_stiffness", "suspension_stiffness")
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Factors(Value):
@@ -62,8 +60,6 @@ class Factors(Value):
     def __str__(self) -> str:
         """What varies from where to where, or by what it differs in all samples."""
         values = self.values
-        if values.size == 0:
-            return f"varied    {self.name}"
         if (values == values[0]).all():
             alike = (values[0] == values[0, 0]).all()
             found = listed(values[0, :1] if alike else values[0], ".4g")
@@ -88,9 +84,10 @@ def factors_of(
     values: object,
     events: Sequence[Event],
     kinds: NDArray[np.uint32],
+    speeds: Array,
     samples: int,
 ) -> list[Factors]:
-    """All factors, those that values come to included."""
+    """All factors, those that values come to included; they and speeds are checked."""
     given, absolute = by_parameter("factors", factors), by_parameter("values", values)
     for name in absolute:
         if name in given:
@@ -101,41 +98,14 @@ def factors_of(
         Factors(name, _columns("factors", name, each, samples)) for name, each in given.items()
     ]
     # The limit first: initial friction counts by what the limit of a sample is.
-    for name, each in sorted(absolute.items(), key=lambda item: item[0] == "initial_friction"):
-        columns = _columns("values", name, each, samples)
-        limits = [other.values for other in found if other.name == "friction_limit"]
-        if name == "initial_friction" and limits:
-            relative = _relative(name, columns, events, kinds, samples, limits[0])
-        else:
-            relative = _relative(name, columns, events, kinds, samples)
-        found.append(Factors(name, relative))
-    _refuse_parts_of_mixed(found, events)
-    for factor in found:
-        if factor.name in given:
-            _check_width(factor, events)
+    order = sorted(absolute, key=lambda name: name == "initial_friction")
+    meant = [Factors(name, _columns("values", name, absolute[name], samples)) for name in order]
+    _core.check_samples(events, samples=samples, speeds=speeds, factors=found, values=meant)
+    for each in meant:
+        varied = [other.values for other in found if other.name == "friction_limit"]
+        limits = varied[0] if varied and each.name == "initial_friction" else 1.0
+        found.append(_relative(each, events, kinds, samples, limits))
     return found
-
-
-def refuse_overdamped(factors: Sequence[Factors], ratios: Sequence[float], first: int) -> None:
-    """Refuses factors that bring the damping of the bridge to its critical value."""
-    most = max(ratios, default=0.0)
-    if not 0.0 <= most < 1.0:  # refused by itself
-        return
-    for each in factors:
-        if each.name != "bridge_damping":
-            continue
-        wrong = each.values[:, :1] * most >= 1.0
-        if wrong.any():
-            row = int(np.flatnonzero(wrong)[0])
-            factor = each.values[row, 0]
-            one = len(each.values) == 1
-            raise InputError(
-                f"factors['bridge_damping']{'' if one else f'[{row}]'}",
-                f"{factor:g}",
-                f"makes of damping = {most:g} in "
-                f"{'every sample' if one else f'sample {first + row}'} {factor * most:g} of "
-                "critical; must stay below 1",
-            )
 
 
 def idle(
@@ -172,44 +142,6 @@ def _springs_have(name: str, vehicle: Vehicle) -> bool:
     return any(getattr(each, attribute) != 0.0 for each in springs)
 
 
-def _check_width(factors: Factors, events: Sequence[Event]) -> None:
-    """Refuses factors by part where a kind of event has another number of parts."""
-    name, width = factors.name, factors.values.shape[1]
-    if width == 1:
-        return
-    given = f"factors[{name!r}]", f"{width} factors a sample"
-    if name in OF_BRIDGES:
-        raise InputError(*given, "must be one for each sample, for there is one bridge")
-    for number, event in enumerate(events):
-        parts = _parts(name, event)
-        if width != parts:
-            kind = f"kind {number}" if len(events) > 1 else "the event"
-            raise InputError(*given, _allowed(name, parts, kind))
-
-
-def _parts(name: str, event: Event) -> int:
-    """How many parts an event has that a parameter is one of."""
-    vehicles = [each.vehicle for each in event]
-    if name in OF_BODIES and all(isinstance(each, Vehicle) for each in vehicles):
-        return sum(len(each.parts) for each in vehicles if isinstance(each, Vehicle))
-    return sum(len(each.static_loads()) for each in vehicles)
-
-
-def _allowed(name: str, parts: int, kind: str) -> str:
-    """How many numbers a parameter takes that `kind` has so many parts of."""
-    if parts == 1:
-        return f"must be one for each sample, for {kind} has one {_part(name)}"
-    return f"must be one for each sample, or one for each of the {parts} {_plural(name)} of {kind}"
-
-
-def _part(name: str) -> str:
-    return "body" if name in OF_BODIES else "axle"
-
-
-def _plural(name: str) -> str:
-    return "bodies" if name in OF_BODIES else "axles"
-
-
 def by_parameter(key: str, table: object) -> dict[str, Array]:
     """Numbers by the name of what varies."""
     if table is None:
@@ -224,10 +156,6 @@ def by_parameter(key: str, table: object) -> dict[str, Array]:
 
 def _columns(key: str, name: str, values: Array, samples: int) -> Array:
     """Shape (1, 1) for a number, else one row for each sample."""
-    if key == "values" and name != "initial_friction":
-        refuse_where(values < 0.0, f"values[{name!r}]", values, "must not be negative")
-        if name in ABOVE_ZERO:
-            refuse_where(values == 0.0, f"values[{name!r}]", values, "must be greater than 0")
     if values.ndim == 0:
         return values.reshape(1, 1)
     if values.ndim > 2 or (values.ndim == 2 and values.shape[1] == 0) or len(values) != samples:
@@ -241,14 +169,14 @@ def _columns(key: str, name: str, values: Array, samples: int) -> Array:
 
 
 def _relative(
-    name: str,
-    values: Array,
+    meant: Factors,
     events: Sequence[Event],
     kinds: NDArray[np.uint32],
     samples: int,
-    limits: Array | float = 1.0,
-) -> Array:
+    limits: Array | float,
+) -> Factors:
     """What multiplies the nominal values to give these; `limits` are factors on those besides."""
+    name, values = meant.name, meant.values
     if ATTRIBUTES[name] is None:
         raise InputError(
             f"values[{name!r}]", None, "a bridge has no single value of it; give factors"
@@ -263,12 +191,6 @@ def _relative(
             f"{', '.join(map(str, sorted(widths)))}; give factors, one for each sample",
         )
     (width,) = widths
-    if values.shape[1] not in (1, width):
-        raise InputError(
-            f"values[{name!r}]",
-            f"{values.shape[1]} values a sample",
-            _allowed(name, width, "the event"),
-        )
     if width == 1 and name in OF_SUSPENSIONS and _has_springs(events):
         raise InputError(
             f"values[{name!r}]",
@@ -276,15 +198,14 @@ def _relative(
             "with a single axle these would vary the springs between bodies too; give factors",
         )
     for number, each in enumerate(nominal):
-        wrong = np.flatnonzero((each == 0.0) | ~np.isfinite(each))
+        wrong = np.flatnonzero(each == 0.0)
         if len(wrong) > 0:
-            what = ATTRIBUTES[name]
+            what, part = ATTRIBUTES[name], "body" if name in OF_BODIES else "axle"
             kind = f" of kind {number}" if len(nominal) > 1 else ""
-            lacks = f"no {what}" if each[wrong[0]] == 0.0 else f"an infinite {what}"
             raise InputError(
                 f"values[{name!r}]",
                 None,
-                f"{_part(name)} {wrong[0] + 1}{kind} has {lacks}, so that "
+                f"{part} {wrong[0] + 1}{kind} has no {what}, so that "
                 f"{'it' if what == name else name} cannot be set by values",
             )
     if len(nominal) == 1:
@@ -308,27 +229,21 @@ def _relative(
         )
     # One number for all parts keeps its place only if there is one part.
     if len(relative) == 1 and width > 1 and samples != 1:
-        return np.broadcast_to(relative, (samples, width)).copy()
-    return relative
+        relative = np.broadcast_to(relative, (samples, width)).copy()
+    return Factors(name, relative)
 
 
 def _nominal(name: str, vehicle: AnyVehicle) -> Array:
     """Values of a vehicle as it is, by body or by axle, front first."""
     if isinstance(vehicle, Vehicle):
-        of = vehicle.parts if name in ("body_mass", "pitch_inertia") else vehicle.axles
+        of = vehicle.parts if name in OF_BODIES else vehicle.axles
         attribute = ATTRIBUTES[name]
         assert attribute is not None
         found = [getattr(each, attribute) for each in of]
         # Of a body that does not pitch any inertia would do.
         return np.array([0.0 if each is None else each for each in found], dtype=np.float64)
-    if name == "body_mass" and isinstance(vehicle, ForceTrain):
-        return np.array(vehicle.loads)
-    if name == "body_mass" and isinstance(vehicle, MovingMasses):
-        return np.array(vehicle.masses)
-    what = "forces" if isinstance(vehicle, ForceTrain) else "masses"
-    raise InputError(
-        f"values[{name!r}]", None, f"a train of {what} has no such thing, only body_mass"
-    )
+    # The core has let nothing but body_mass pass.
+    return np.array(vehicle.loads if isinstance(vehicle, ForceTrain) else vehicle.masses)
 
 
 def _has_springs(events: Sequence[Event]) -> bool:
@@ -337,17 +252,3 @@ def _has_springs(events: Sequence[Event]) -> bool:
         isinstance(vehicle, Vehicle) and any(body.springs for body in vehicle.parts)
         for vehicle in vehicles
     )
-
-
-def _refuse_parts_of_mixed(factors: Sequence[Factors], events: Sequence[Event]) -> None:
-    """Masses by part have no order where vehicles and trains cross in one event."""
-    is_train: Callable[[Any], bool] = lambda each: not isinstance(each.vehicle, Vehicle)  # noqa: E731
-    for each in factors:
-        by_part = each.name in ("body_mass", "pitch_inertia") and each.values.shape[1] > 1
-        if by_part and any(len({*map(is_train, event)}) > 1 for event in events):
-            raise InputError(
-                each.name,
-                None,
-                "vehicles and trains in one event have no common parts; give one number for "
-                "each sample",
-            )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from spanwise import _core
 from spanwise._checks import count
 from spanwise._conditions import FOX_GOODWIN, Recovery
-from spanwise._events import is_simple, speeds_by_kind
+from spanwise._events import is_simple
 from spanwise._keys import suggesting
 from spanwise._plan_of_arguments import Asked, plan_of
 from spanwise._progress import Bar
@@ -179,10 +179,10 @@ def ensemble(
     for doubt in plan.doubts():
         warn(doubt, PlausibilityWarning)
     simple = all(is_simple(event, plan.drive) for event in events)
-    column = speeds
+    column = speeds.column
     if simple:
         # The speeds of passages stand among those of the samples.
-        column = speeds_by_kind(speeds, events, plan.kinds, plan.samples)
+        column = plan.front_speeds
         events = tuple((replace(each, speed=None) if each.speed else each,) for (each,) in events)
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise refused("progress", progress, "must be callable, or True for a line")
@@ -195,7 +195,7 @@ def ensemble(
             bridge._core,
             plan,
             events=events,
-            speeds=column.column,
+            speeds=column,
             road=plan.road._core,
             quantities=[part for name in plan.quantities for part in RESPONSES[name].parts],
             threads=None if threads is None else count("threads", threads),

@@ -29,7 +29,7 @@ impl Study {
         // Here too, not only in the workers' threads: the geometry is laid out on this one.
         let _mode = Standard::set();
         samples.check(&self.vehicles())?;
-        self.check_factors(samples)?;
+        samples.check_damping(&self.analysis.model.damping)?;
         if !self.shares {
             // Before its entry a vehicle comes from the farther away, the faster it is.
             let fastest = samples.speeds.iter().copied().fold(0.0, f64::max);

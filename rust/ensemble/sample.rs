@@ -1,7 +1,6 @@
 //! What differs from sample to sample: number, kind of event, speed, and factors on vehicle and bridge.
 
 use crate::error::Error;
-use crate::passage::motion::reasonable;
 use crate::vehicle::Vehicle;
 use crate::vehicle::body::{Coupling, Friction};
 
@@ -68,33 +67,6 @@ impl Parameter {
             let names: Vec<&str> = Parameter::ALL.iter().map(|p| p.name()).collect();
             Error::input("factors", format!("\"{name}\""), format!("must be one of {}", names.join(", ")))
         })
-    }
-
-    /// How many parts of vehicles with so many bodies and axles it has a value for.
-    fn parts(self, vehicles: &[&Vehicle]) -> (usize, &'static str) {
-        let axles = vehicles.iter().map(|v| v.assembly().contacts.len()).sum();
-        match self {
-            Parameter::BridgeStiffness | Parameter::BridgeDamping => (1, "bridge"),
-            Parameter::BodyMass | Parameter::PitchInertia if vehicles.iter().all(|v| !v.bodies().is_empty()) => {
-                (vehicles.iter().map(|v| v.bodies().len()).sum(), "bodies")
-            }
-            _ => (axles, "axles"),
-        }
-    }
-
-    /// Refuses a value that cannot be.
-    fn check(self, key: impl Fn() -> String, value: f64) -> Result<(), Error> {
-        let (ok, allowed) = match self {
-            Parameter::InitialFriction => ((-1.0..=1.0).contains(&value), "must be from -1 to 1, in friction limits"),
-            Parameter::TyreDamping
-            | Parameter::SuspensionDamping
-            | Parameter::FrictionLimit
-            | Parameter::BridgeDamping => {
-                (value.is_finite() && value >= 0.0, "a factor must be a finite number, 0 or more")
-            }
-            _ => (value.is_finite() && value > 0.0, "a factor must be finite and greater than 0"),
-        };
-        if ok { Ok(()) } else { Err(Error::input(key(), value, allowed)) }
     }
 }
 
@@ -190,52 +162,6 @@ impl Samples {
     /// Whether all samples of a kind are alike but for their roads.
     pub fn alike(&self) -> bool {
         self.factors.iter().all(|factors| factors.values.len() == factors.width) && self.speeds.len() == 1
-    }
-
-    /// Refuses columns that do not fit each other or the kinds of event, each with its vehicles, and values that cannot
-    /// be.
-    pub fn check(&self, kinds: &[Vec<&Vehicle>]) -> Result<(), Error> {
-        let count = self.count;
-        if !self.kinds.is_empty() && self.kinds.len() != count {
-            let allowed = format!("must be one for each of the {count} samples");
-            return Err(Error::input("kind", format!("{} numbers", self.kinds.len()), allowed));
-        }
-        if let Some((i, kind)) = self.kinds.iter().enumerate().find(|&(_, &kind)| kind as usize >= kinds.len()) {
-            let allowed = format!("must be from 0 to {}", kinds.len() - 1);
-            return Err(Error::input(format!("kind[{i}]"), kind, allowed));
-        }
-        let most = kinds.iter().map(Vec::len).max().unwrap_or(1);
-        if ![1, count, count * most].contains(&self.speeds.len()) {
-            let allowed = format!("must be one for all, or one for each of the {count} samples");
-            return Err(Error::input("speed", format!("{} values", self.speeds.len()), allowed));
-        }
-        for (i, &speed) in self.speeds.iter().enumerate() {
-            let key = || if self.speeds.len() == 1 { "speed".to_string() } else { format!("speed[{i}]") };
-            if !(speed.is_finite() && speed > 0.0) {
-                return Err(Error::input(key(), speed, "must be finite and greater than 0"));
-            }
-            reasonable(key(), speed, "m/s")?;
-        }
-        for factors in &self.factors {
-            let Factors { parameter, width, values } = factors;
-            let name = parameter.name();
-            for vehicles in kinds {
-                let (parts, what) = parameter.parts(vehicles);
-                if *width != 1 && *width != parts {
-                    let allowed = format!("must be one for each sample, or one for each of its {parts} {what}");
-                    return Err(Error::input(name, format!("{width} factors a sample"), allowed));
-                }
-            }
-            if values.len() != *width && values.len() != count * width {
-                let allowed = format!("must be one for all, or one for each of the {count} samples");
-                return Err(Error::input(name, format!("{} values", values.len()), allowed));
-            }
-            for (i, &value) in values.iter().enumerate() {
-                let key = || if values.len() == 1 { name.to_string() } else { format!("{name}[{}]", i / width) };
-                parameter.check(key, value)?;
-            }
-        }
-        Ok(())
     }
 
     /// A vehicle as a sample has it; its bodies and axles are counted from these among those of the event.

@@ -19,7 +19,6 @@ use crate::selection::Selection;
 use crate::statics::quantity::Quantity;
 use crate::stop_token::StopToken;
 use crate::vehicle::body::BuildUp;
-use crate::vehicle::equations::ContactLaw;
 use crate::vehicle::{MAX_AXLES, Vehicle};
 
 /// One kind of event: a vehicle, or several, on their way.
@@ -333,32 +332,5 @@ impl Study {
         };
         let marches = (0..samples.count).map(&mut found).collect();
         (marches, lost)
-    }
-
-    /// Refuses factors on what a vehicle does not have.
-    pub(super) fn check_factors(&self, samples: &Samples) -> Result<(), Error> {
-        for factors in &samples.factors {
-            let parameter = factors.parameter;
-            let of_bridge = matches!(parameter, Parameter::BridgeStiffness | Parameter::BridgeDamping);
-            for passage in self.kinds.iter().flat_map(|kind| &kind.passages) {
-                let vehicle = &passage.vehicle;
-                let train = vehicle.bodies().is_empty();
-                let name = parameter.name();
-                if train && !of_bridge && parameter != Parameter::BodyMass {
-                    let what = match vehicle.assembly().contacts[0].law {
-                        ContactLaw::Force => "forces",
-                        _ => "masses",
-                    };
-                    let allowed = format!("a train of {what} has no such thing, only body_mass");
-                    return Err(Error::input("factors", format!("\"{name}\""), allowed));
-                }
-                let locked = vehicle.axles().iter().any(|axle| axle.friction.limit.is_infinite());
-                if locked && matches!(parameter, Parameter::FrictionLimit | Parameter::InitialFriction) {
-                    let allowed = "not with locked suspensions, whose friction has no limit";
-                    return Err(Error::input("factors", format!("\"{name}\""), allowed));
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -292,7 +292,7 @@ impl Crossing {
         ])
     }
 
-    /// Impact factors of a quantity in one sense, NaN where masked.
+    /// Impact factors of a quantity in one sense, NaN where masked, by a part that Python has checked.
     fn impact_factors<'py>(
         &self,
         py: Python<'py>,
@@ -309,10 +309,6 @@ impl Crossing {
             ("at-static-extreme", Ratio::AtStaticExtreme),
         ];
         let ratio = one_of("ratio", ratio, ratios)?;
-        if !(0.0..1.0).contains(&mask) {
-            let allowed = "must be a fraction of the largest static value, from 0 to below 1";
-            return Err(Error::input("mask", mask, allowed).into());
-        }
         Ok(self.envelope_of(py, quantity)?.impact_factors(sense, ratio, mask).into_pyarray(py))
     }
 }

@@ -17,6 +17,7 @@ use super::road::PyRoad;
 use super::vehicle::PyVehicle;
 use super::{Matrix, Vector, attended, interruptible, packed, preparing, rows};
 use crate::crossing::analysis::Analysis;
+use crate::ensemble::checks::Numbers;
 use crate::ensemble::results::{Column, Failure, Format, fingerprint as fingerprint_of};
 use crate::ensemble::sample::{Factors, Parameter, Samples};
 use crate::ensemble::varied::vehicles as varied_vehicles;
@@ -241,7 +242,26 @@ fn coordinates(event: &[Passage]) -> usize {
     event.iter().map(|passage| passage.vehicle.assembly().coordinates.len()).sum()
 }
 
-/// The vehicles of an event with the factors of one sample.
+/// Refuses samples that cannot be: speeds [m/s], factors, and values in place of factors, by these kinds of event.
+#[pyfunction]
+#[pyo3(signature = (events, *, samples, speeds, factors, values))]
+pub fn check_samples(
+    events: &Bound<'_, PyAny>,
+    samples: usize,
+    speeds: PyReadonlyArray1<'_, f64>,
+    factors: &Bound<'_, PyAny>,
+    values: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    let kinds = events_of(events)?;
+    let vehicles: Vec<Vec<&Vehicle>> =
+        kinds.iter().map(|event| event.iter().map(|passage| &passage.vehicle).collect()).collect();
+    let (speeds, factors) = (speeds.as_array().to_vec(), factors_of(factors)?);
+    Samples { first: 0, count: samples, kinds: Vec::new(), speeds, factors }.check(&vehicles)?;
+    let refused = |values: &Factors| values.check(Numbers::Values, samples, &vehicles);
+    Ok(factors_of(values)?.iter().try_for_each(refused)?)
+}
+
+/// The vehicles of an event with the factors of one sample, which have been checked.
 #[pyfunction]
 pub fn varied<'py>(
     py: Python<'py>,
@@ -250,8 +270,6 @@ pub fn varied<'py>(
 ) -> PyResult<Vec<PyVehicle>> {
     let samples = Samples { factors: factors_of(factors)?, ..Samples::at_speed(0, 1, 1.0) };
     let event = passages_of(event)?;
-    let given: Vec<&Vehicle> = event.iter().map(|passage| &passage.vehicle).collect();
-    samples.check(&[given])?;
     let vehicles = preparing(py, coordinates(&event), move |_| varied_vehicles(&event, &samples, 0))?;
     Ok(vehicles.into_iter().map(PyVehicle).collect())
 }
@@ -269,8 +287,6 @@ pub fn static_loads<'py>(py: Python<'py>, plan: &Bound<'py, PyAny>, gravity: f64
     let count = samples.count;
     let vehicles = |event: &Vec<Passage>| event.iter().map(|passage| passage.vehicle.clone()).collect::<Vec<_>>();
     let as_given: Vec<Vec<Vehicle>> = kinds.iter().map(vehicles).collect();
-    let borrowed: Vec<Vec<&Vehicle>> = as_given.iter().map(|event| event.iter().collect()).collect();
-    samples.check(&borrowed)?;
     let contacts = |vehicle: &Vehicle| vehicle.assembly().contacts.len();
     let axles = as_given.iter().map(|event| event.iter().map(contacts).sum::<usize>()).max().unwrap_or(0);
     let bytes = (size_of::<f64>() * count) as f64 * axles as f64;
