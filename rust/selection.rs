@@ -11,8 +11,6 @@ pub struct Row {
     pub response: usize,
     /// What multiplies the modal coordinates.
     pub factors: Vec<f64>,
-    /// By factor, 1 where it is negative: which of its largest and smallest gives the upper bound.
-    pub turned: Vec<usize>,
 }
 
 /// A section or an end of the bridge, where extremes are looked for as an axle passes.
@@ -37,6 +35,8 @@ pub struct Selection {
     pub chosen: Vec<usize>,
     /// The distinct rows among them.
     pub rows: Vec<Row>,
+    /// What multiplies the modal coordinates in all of them, one after the other.
+    pub factors: Vec<f64>,
     /// The row of each chosen response.
     pub row_of: Vec<usize>,
     /// The first of the chosen responses that each row stands for.
@@ -59,6 +59,7 @@ impl Selection {
         let mut look = Selection {
             chosen: Vec::new(),
             rows: Vec::new(),
+            factors: Vec::new(),
             row_of: Vec::new(),
             first_of_row: Vec::new(),
             quantities: Vec::new(),
@@ -85,8 +86,8 @@ impl Selection {
                     look.first_of_row.push(look.chosen.len());
                     own_row[response] = Some(row);
                     let factors: Vec<f64> = (0..rows.width()).map(|i| rows.factor(response, i)).collect();
-                    let turned = factors.iter().map(|&factor| usize::from(factor < 0.0)).collect();
-                    look.rows.push(Row { response, factors, turned });
+                    look.factors.extend_from_slice(&factors);
+                    look.rows.push(Row { response, factors });
                 }
                 look.chosen.push(response);
                 look.quantities.push(quantity);

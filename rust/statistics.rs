@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::extremes::Peaks;
 use crate::lane::Lane;
-use crate::tape::Tape;
+use crate::tape::{PART, Tape};
 
 /// Contact forces of a vehicle and accelerations of its bodies over a crossing.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -64,13 +64,16 @@ impl<L: Lane> Ride<L> {
         for (k, static_load) in static_loads.iter().enumerate() {
             let number = widths.loads() + k;
             let loads = || chunk.rows.chunks_exact(width).map(|row| row[number]).enumerate();
-            let [most, least] = chunk.limits[number];
-            if L::any(self.loads[k].max.less(most) | least.less(self.loads[k].min)) {
-                let mut peaks = self.loads[k];
-                for (i, load) in loads() {
-                    peaks.take(load, L::splat((from + i) as f64));
+            let [_, least] = chunk.limits[number];
+            let parts = chunk.parts.chunks_exact(width).map(|part| part[number]);
+            for ((part, [most, least]), rows) in parts.enumerate().zip(chunk.rows.chunks(PART * width)) {
+                if L::any(self.loads[k].max.less(most) | least.less(self.loads[k].min)) {
+                    let mut peaks = self.loads[k];
+                    for (i, row) in rows.chunks_exact(width).enumerate() {
+                        peaks.take(row[number], L::splat((from + part * PART + i) as f64));
+                    }
+                    self.loads[k] = peaks;
                 }
-                self.loads[k] = peaks;
             }
             if counted {
                 let mut squares = self.deviations[k];

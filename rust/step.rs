@@ -4,8 +4,8 @@
 //! ([`vehicle_step`], one [`unit`] of the step each). They meet in the [`contact`] forces and in [`friction`], the
 //! unknowns of δ = u − S p: S is the [`compliance`], u the gap without their increments, and the [`coupled_forces`] are
 //! solved for together by the [`stepper`]. It begins with vehicles that [`stand`] where the crossing [`start`]s; those
-//! in [`rolling`] go where the step takes them. Where a step's [`sizes`] are known, the compiler is told. Once all have
-//! left there is free [`vibration`].
+//! in [`rolling`] go where the step takes them. Where a step's [`sizes`] are known, the compiler is told; the usual
+//! vehicles have steps of their own ([`swift`]). Once all have left there is free [`vibration`].
 
 pub(crate) mod bridge_step;
 pub(crate) mod compliance;
@@ -18,6 +18,7 @@ pub(crate) mod sizes;
 pub(crate) mod stand;
 pub(crate) mod start;
 pub(crate) mod stepper;
+pub(crate) mod swift;
 pub(crate) mod unit;
 pub(crate) mod vehicle_step;
 pub(crate) mod vibration;
@@ -28,5 +29,6 @@ pub use coupled_forces::Elements;
 pub use friction::{Law, Stroke};
 pub use newmark::Newmark;
 pub use stepper::{Scheme, State, Stepper};
+pub use swift::{Gait, Standing};
 pub use unit::{Moving, Propulsion};
 pub use vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};

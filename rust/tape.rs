@@ -1,6 +1,8 @@
 //! A tape: the numbers that steps leave for recovery (coordinates, axle loads, accelerations), kept chunk by chunk with the
 //! largest and smallest of each.
 
+use std::ops::Range;
+
 use crate::lane::Lane;
 use crate::recovery::Rows;
 use crate::statics::quantity::{Quantity, Unit};
@@ -87,7 +89,12 @@ impl Widths {
         }
         if values {
             for (m, own) in left.iter_mut().take(modes).enumerate() {
-                *own = factors.map_or(derivative(0, m), |factors| factors.coordinates * derivative(0, m));
+                *own = derivative(0, m);
+            }
+            if let Some(factors) = factors {
+                for own in left.iter_mut().take(modes) {
+                    *own = factors.coordinates * *own;
+                }
             }
             left = left.get_mut(modes..).unwrap_or_default();
         }
@@ -206,6 +213,13 @@ impl<L: Lane> Tape<L> {
         [before, row]
     }
 
+    /// The rows of some steps, to be written.
+    #[inline(always)]
+    pub fn rows_mut(&mut self, steps: Range<usize>) -> &mut [L] {
+        let width = self.widths.all();
+        &mut self.rows[(steps.start + 1 - self.from) * width..][..steps.len() * width]
+    }
+
     /// Takes in a chunk of so many steps, whose rows have been written.
     #[inline(always)]
     pub fn take(&mut self, count: usize) {
@@ -215,9 +229,15 @@ impl<L: Lane> Tape<L> {
         let all = &mut self.limits[chunk * width..][..width];
         let parts = self.parts[chunk * PARTS * width..][..PARTS * width].chunks_exact_mut(width);
         for (p, (rows, parts)) in rows.chunks(PART * width).zip(parts).enumerate() {
+            let (first, last) = (&rows[..width], rows.len() / width - 1);
+            // One row beside the other, the last as often as it takes, so that the loop over the numbers has no other in it.
+            let mut others = [first; PART - 1];
+            for (i, other) in others.iter_mut().enumerate() {
+                *other = &rows[(i + 1).min(last) * width..][..width];
+            }
             for (i, (part, all)) in parts.iter_mut().zip(all.iter_mut()).enumerate() {
-                let (mut most, mut least) = (rows[i], rows[i]);
-                for row in rows[width..].chunks_exact(width) {
+                let (mut most, mut least) = (first[i], first[i]);
+                for row in others {
                     most = row[i].larger(most);
                     least = row[i].smaller(least);
                 }

@@ -5,15 +5,16 @@ use spanwise::stop_token::StopToken;
 use std::sync::Arc;
 
 use crate::problems::ensemble::*;
-use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf};
+use crate::problems::vehicles::{articulated, elastic, half_car, hs20, leaf, with_axles};
 use crate::problems::{all_arrangements, kishan_bridge, kishan_vehicle, spread};
 use spanwise::bridge::Bridge;
-use spanwise::damping::Damping;
+use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::{BLOCK, Column, Factors, Parameter, Samples, Study};
 use spanwise::lane::Isa;
 use spanwise::passage::{Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::vehicle::{Axle, Friction, Vehicle};
+use spanwise::step::{Moving, Propulsion, Scheme, Stepper};
+use spanwise::vehicle::{Axle, Friction, Vehicle, catalogue};
 
 /// Every way of doing the work, against the samples in one go on one thread without any instruction set in particular;
 /// and some samples alone.
@@ -177,6 +178,64 @@ fn a_sample_is_a_crossing_by_every_vehicle() {
             check_study(&format!("{name}, {recovery:?}"), &kishan_bridge(), vehicle, recovery, variant + more);
         }
     }
+}
+
+/// Vehicles that have their own steps, those of [`spanwise::step::Gait`], where samples are alike, against the steps of any
+/// vehicle, which a single crossing takes: they stick, slide, lift off, and come on to the bridge and leave it.
+#[test]
+fn own_steps_are_those_of_any_vehicle() {
+    let coulomb = |axles: usize| {
+        let friction = Friction { initial: 2e3, ..Friction::coulomb(9e3) };
+        let at = |k: usize| 0.85 * (axles as f64 - 1.0 - 2.0 * k as f64);
+        let axle = |k| Axle { friction, ..Axle::new(at(k), 3.5e6, 1.1e6 + 1e5 * k as f64) };
+        Vehicle::new(7e3 * axles as f64, 9e4, 1.2, (0..axles).map(axle).collect()).unwrap()
+    };
+    let undamped = |vehicle: Vehicle| with_axles(Ok(vehicle), |_, axle| axle.tyre_damping = 0.0);
+    let vehicles = [
+        ("two axles that rub", coulomb(2)),
+        ("three axles that rub", coulomb(3)),
+        ("four axles that rub", coulomb(4)),
+        ("five axles that rub", coulomb(5)),
+        ("a quarter of a lorry", catalogue::quarter_car(1.0).unwrap()),
+        ("half a lorry", half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE)),
+        ("half a lorry, damped tyres", half_car([700.0, 1100.0], 1.0, 1.0, Friction::NONE)),
+        ("three axles", undamped(hs20(1.0))),
+        ("three axles, damped tyres", hs20(1.0)),
+        ("five axles", articulated(1.0, 0.0)),
+        (
+            "five axles, one tyre undamped",
+            with_axles(Ok(articulated(1.0, 1.0)), |k, axle| {
+                axle.tyre_damping *= f64::from(u8::from(k != 2));
+            }),
+        ),
+    ];
+    let mut lifting = 0;
+    for (variant, (name, vehicle)) in vehicles.into_iter().enumerate() {
+        let (assembly, propulsion) = (vehicle.assembly(), Propulsion::Prescribed);
+        let moving = [Moving { assembly, propulsion, direction: 1.0, grade: 0.0 }];
+        let scheme = Scheme { h: 1e-3, beta: 0.25, gravity: 9.81, lift_off: true };
+        let stepper = Stepper::<f64>::new(&[], &ModalDamping::Classical(Vec::new()), &moving, &scheme);
+        assert!(stepper.gait().is_some(), "{name}");
+        let modes = 1 + variant % 4;
+        let analysis =
+            analysis_of(&kishan_bridge(), modes, &Damping::Ratios(vec![0.02]), &[], Recovery::ForceSummation);
+        let tail = [Tail::Fixed(0.13), Tail::Free, Tail::Fixed(0.0)][variant % 3];
+        let approach = if variant % 4 == 3 { 0.0 } else { 9.0 };
+        let settings = Settings { approach, ramp: 0.3 * approach, tail, ..Settings::at_speed(SPEED) };
+        let kinds = vec![vec![Passage::of(vehicle)]];
+        let study = study_of(analysis, kinds, settings, Some((roads(4.0 * POOR), 3)), Some(0.05), &ALL).unwrap();
+        let samples = Samples::at_speed(11, 19, 24.0);
+        let found = run(&study, &samples, Isa::chosen().unwrap(), 1);
+        check_alone(&study, &samples, &found, name);
+        let (results, format) = (&found.results, found.results.format);
+        let lifted = |i: usize| row(results, i).1[2 * (format.responses + format.axles)..].iter().any(|&n| n > 0);
+        lifting += usize::from((0..samples.count).any(lifted));
+        for isa in Isa::present() {
+            assert_eq!(run(&study, &samples, isa, 2).results.hash(), results.hash(), "{name}, {isa:?}");
+        }
+    }
+    // The others are too heavy on their tyres for this road.
+    assert!(lifting >= 4, "{lifting} vehicles lift off");
 }
 
 /// Factors of each axle and body its own, and on the bridge, by every recovery.

@@ -7,116 +7,136 @@
 
 use super::table::{Chunk, middle};
 use crate::extremes::{Peaks, value};
-use crate::lane::Lane;
-use crate::selection::Row;
+use crate::lane::{Lane, Work};
 use crate::tape::{PART, PARTS, Tape};
 
-/// Looks for the extremes of every response at the steps of a tape: `chunks` of the influence of the loads, none where
-/// there is no axle on the bridge. `glanced` is scratch.
-#[inline(always)]
-pub fn search<L: Lane>(
-    peaks: &mut [Peaks<L>],
-    rows: &[Row],
-    tape: &Tape<L>,
-    chunks: Option<&[Chunk]>,
-    glanced: &mut Vec<[L; 2]>,
-) {
-    // What is known when this is compiled runs much faster: the usual numbers of modes and axles. Not in debug builds,
-    // which it would make long.
-    macro_rules! sizes {
-        ($($c:literal $a:literal),*) => {
-            match (tape.widths.coordinates, if chunks.is_some() { tape.widths.axles } else { 0 }) {
-                $(($c, $a) if !cfg!(debug_assertions) => search_sizes($c, $a, peaks, rows, tape, chunks, glanced),)*
-                (c, a) => search_sizes(c, a, peaks, rows, tape, chunks, glanced),
-            }
-        };
-    }
-    sizes!(1 2, 2 2, 3 2, 4 2, 5 2, 3 3, 3 4, 3 5)
+/// Most numbers of a step that are held beside each other where how many there are is known.
+const MOST: usize = 12;
+
+/// The search for the extremes of every response at the steps of a tape: `chunks` of the influence of the loads, none
+/// where there is no axle on the bridge. With C coordinates and A axles loops run a known number of times, and a chunk's
+/// numbers stay in registers; with no C given there can be any number of either.
+pub struct Searching<'s, L, const C: usize, const A: usize> {
+    /// Extremes so far, by row.
+    pub peaks: &'s mut [Peaks<L>],
+    /// What multiplies the coordinates, by row.
+    pub factors: &'s [f64],
+    /// The steps.
+    pub tape: &'s Tape<L>,
+    /// What the axles do.
+    pub chunks: Option<&'s [Chunk]>,
+    /// Room to work in.
+    pub glanced: &'s mut Vec<[L; 2]>,
 }
 
-/// [`search`] with so many coordinates and axles.
-#[inline(always)]
-fn search_sizes<L: Lane>(
-    c: usize,
-    a: usize,
-    peaks: &mut [Peaks<L>],
-    rows: &[Row],
-    tape: &Tape<L>,
-    chunks: Option<&[Chunk]>,
-    glanced: &mut Vec<[L; 2]>,
-) {
-    let unloaded = Chunk::default();
-    let chunk_of = |chunk: usize| chunks.map_or(&unloaded, |chunks| &chunks[chunk]);
-    let (felt, width) = (c + a, tape.widths.all());
-    // What the extremes must reach.
-    glanced.clear();
-    for (r, (Row { factors, .. }, seen)) in rows.iter().zip(peaks.iter()).enumerate() {
-        let (mut most, mut least) = (seen.max, seen.min);
+impl<L: Lane, const C: usize, const A: usize> Work for Searching<'_, L, C, A> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Searching { peaks, factors, tape, chunks, glanced } = self;
+        let (c, a) = match C {
+            0 => (tape.widths.coordinates, if chunks.is_some() { tape.widths.axles } else { 0 }),
+            _ => (C, A),
+        };
+        let unloaded = Chunk::default();
+        let chunk_of = |chunk: usize| chunks.map_or(&unloaded, |chunks| &chunks[chunk]);
+        let (felt, width) = (c + a, tape.widths.all());
+        // What the extremes must reach.
+        glanced.clear();
+        glanced.extend(peaks.iter().map(|seen| [seen.max, seen.min]));
+        let mut held = [L::splat(0.0); MOST];
         for (chunk, kept) in tape.chunks().enumerate() {
             let at = middle(kept.rows.len() / width);
-            let value = value(&factors[..c], &chunk_of(chunk).middles[r * a..][..a], &kept.rows[at * width..][..felt]);
-            most = value.larger(most);
-            least = value.smaller(least);
-        }
-        glanced.push([most, least]);
-    }
-    for (chunk, kept) in tape.chunks().enumerate() {
-        let Chunk { influence, bounds, parts, .. } = chunk_of(chunk);
-        let count = kept.rows.len() / width;
-        let ends = &kept.limits[..felt];
-        let mut positive = true;
-        for [_, least] in &ends[c..] {
-            positive &= !L::any(least.less(L::splat(0.0)));
-        }
-        for (r, Row { factors, turned, .. }) in rows.iter().enumerate() {
-            let (factors, turned) = (&factors[..c], &turned[..c]);
-            if !peaks[r].may_grow(bound(factors, turned, &bounds[r * a..][..a], ends, positive), glanced[r]) {
-                continue;
+            let row = hold::<C, _>(&kept.rows[at * width..][..felt], &mut held);
+            let middles = &chunk_of(chunk).middles;
+            for (r, ([most, least], factors)) in glanced.iter_mut().zip(factors.chunks_exact(c)).enumerate() {
+                let value = value(factors, &middles[r * a..][..a], row);
+                *most = value.larger(*most);
+                *least = value.smaller(*least);
             }
-            let mut seen = peaks[r];
-            for part in 0..count.div_ceil(PART) {
-                let ends = &kept.parts[part * width..][..felt];
-                let reached = bound(factors, turned, &parts[(r * PARTS + part) * a..][..a], ends, positive);
-                if !seen.may_grow(reached, glanced[r]) {
+        }
+        let mut held = [[L::splat(0.0); 2]; MOST];
+        for (chunk, kept) in tape.chunks().enumerate() {
+            let Chunk { influence, bounds, parts, .. } = chunk_of(chunk);
+            let count = kept.rows.len() / width;
+            let ends = hold::<C, _>(&kept.limits[..felt], &mut held);
+            let mut positive = true;
+            for [_, least] in &ends[c..] {
+                positive &= !L::any(least.less(L::splat(0.0)));
+            }
+            let rows = peaks.iter_mut().zip(glanced.iter()).zip(factors.chunks_exact(c));
+            for (r, ((seen, reached), factors)) in rows.enumerate() {
+                if !seen.may_grow(bound(factors, &bounds[r * a..][..a], ends, positive), *reached) {
                     continue;
                 }
-                let first = part * PART;
-                let influence = &influence[(r * count + first) * a..(r + 1) * count * a];
-                let mut at = (kept.from + first) as f64;
-                for (step, row) in kept.rows[first * width..].chunks_exact(width).take(PART).enumerate() {
-                    seen.take(value(factors, &influence[step * a..][..a], &row[..felt]), L::splat(at));
-                    at += 1.0;
+                let influence = &influence[r * count * a..][..count * a];
+                let parts = &parts[r * PARTS * a..][..PARTS * a];
+                for part in 0..count.div_ceil(PART) {
+                    let ends = &kept.parts[part * width..][..felt];
+                    if !seen.may_grow(bound(factors, &parts[part * a..][..a], ends, positive), *reached) {
+                        continue;
+                    }
+                    let first = part * PART;
+                    let (own, at) = (&influence[first * a..], kept.from + first);
+                    look(seen, (factors, a), own, (&kept.rows[first * width..], width), at);
                 }
             }
-            peaks[r] = seen;
         }
     }
+}
+
+/// Some numbers, beside each other in registers if it is known how many: the compiler does not keep there what may be
+/// written to.
+#[inline(always)]
+fn hold<'h, const C: usize, T: Copy>(numbers: &'h [T], held: &'h mut [T; MOST]) -> &'h [T] {
+    if C == 0 {
+        return numbers;
+    }
+    let held = &mut held[..numbers.len()];
+    held.copy_from_slice(numbers);
+    held
+}
+
+/// Takes in the values of a response in the steps of a part that begins with these numbers, the first of them `from`.
+#[inline(always)]
+fn look<L: Lane>(
+    seen: &mut Peaks<L>,
+    (factors, a): (&[f64], usize),
+    influence: &[f64],
+    (rows, width): (&[L], usize),
+    from: usize,
+) {
+    let felt = factors.len() + a;
+    let mut own = *seen;
+    let mut at = from as f64;
+    for (step, row) in rows.chunks_exact(width).take(PART).enumerate() {
+        own.take(value(factors, &influence[step * a..][..a], &row[..felt]), L::splat(at));
+        at += 1.0;
+    }
+    *seen = own;
 }
 
 /// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
 /// are all `positive`.
 #[inline(always)]
-fn bound<L: Lane>(factors: &[f64], turned: &[usize], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
-    // A negative factor takes the other end.
-    let first = L::splat(factors[0]);
-    let mut high = first * ends[0][turned[0]];
-    let mut low = first * ends[0][1 - turned[0]];
-    for i in 1..factors.len() {
-        let factor = L::splat(factors[i]);
-        high = high + factor * ends[i][turned[i]];
-        low = low + factor * ends[i][1 - turned[i]];
+fn bound<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
+    let (of_coordinates, of_loads) = ends.split_at(factors.len());
+    let between = |factor: f64, [most, least]: [L; 2]| {
+        let (a, b) = (L::splat(factor) * most, L::splat(factor) * least);
+        [a.larger(b), a.smaller(b)]
+    };
+    let [mut high, mut low] = between(factors[0], of_coordinates[0]);
+    for (factor, ends) in factors[1..].iter().zip(&of_coordinates[1..]) {
+        let [most, least] = between(*factor, *ends);
+        (high, low) = (high + most, low + least);
     }
-    for (k, &[from, to]) in bounds.iter().enumerate() {
-        let ends = &ends[factors.len() + k];
-        let (least, most) = (L::splat(from), L::splat(to));
+    for (&[from, to], ends) in bounds.iter().zip(of_loads) {
+        let ([most, below], [above, least]) = (between(to, *ends), between(from, *ends));
         if positive {
-            high = high + most * ends[usize::from(to < 0.0)];
-            low = low + least * ends[usize::from(from >= 0.0)];
+            (high, low) = (high + most, low + least);
         } else {
-            let (a, b) = (most * ends[0], most * ends[1]);
-            let (c, d) = (least * ends[0], least * ends[1]);
-            high = high + a.larger(b).larger(c.larger(d));
-            low = low + a.smaller(b).smaller(c.smaller(d));
+            (high, low) = (high + most.larger(above), low + below.smaller(least));
         }
     }
     [high, low]

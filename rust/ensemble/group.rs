@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::bounds::search;
+use super::bounds::Searching;
 use super::table::{Chunk, Table};
 use super::tabulated::Tabulated;
 use crate::coordinate::Coordinate;
@@ -15,6 +15,7 @@ use crate::road::random::Synthesis;
 use crate::selection::Selection;
 use crate::statistics::Ride;
 use crate::step::stepper::{State, Stepper, Unsettled};
+use crate::step::swift::{COULOMB, Coupling, DAMPERS, Gait, SPRINGS, Standing, Swift};
 use crate::step::vibration::{Reach, Vibration};
 use crate::stop_token::StopToken;
 use crate::stops::PassingInfluence;
@@ -150,20 +151,8 @@ impl<L: Lane> Traveller<'_, '_, L> {
     #[inline(always)]
     fn keep(&self, kept: &mut [L], widths: &Widths) {
         let State { modes, increments, coordinates, .. } = &self.state;
-        let derivative = |order: usize, m: usize| match order {
-            0 => modes[m].x,
-            1 => modes[m].v,
-            _ => modes[m].a,
-        };
-        widths.write_modes(kept, modes.len(), derivative, self.group.bridge.as_ref());
-        let loads = kept[widths.loads()..][..widths.axles].iter_mut();
-        for ((load, at_rest), increment) in loads.zip(&self.static_loads).zip(increments) {
-            *load = *at_rest + *increment;
-        }
-        for (acceleration, row) in kept[widths.accelerations()..].iter_mut().zip(self.group.bodies) {
-            let terms = row.iter().zip(coordinates);
-            *acceleration = terms.fold(L::splat(0.0), |sum, (factor, q)| sum + L::splat(*factor) * q.a);
-        }
+        keep(kept, widths, modes, self.group.bridge.as_ref(), (&self.static_loads, increments));
+        keep_accelerations(&mut kept[widths.accelerations()..], self.group.bodies, coordinates);
     }
 
     /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats the row before.
@@ -206,6 +195,36 @@ impl<L: Lane> Traveller<'_, '_, L> {
         let nought = sum - sum;
         let ended = self.group.ends.last.less(L::splat(step as f64));
         L::all(!(nought.less(zero) | !nought.less(L::splat(1.0))) | ended)
+    }
+}
+
+/// Keeps the modes and the loads, static and increments, of a step in its row.
+#[inline(always)]
+fn keep<L: Lane>(
+    kept: &mut [L],
+    widths: &Widths,
+    modes: &[Coordinate<L>],
+    factors: Option<&BridgeFactors<L>>,
+    (at_rest, increments): (&[L], &[L]),
+) {
+    let derivative = |order: usize, m: usize| match order {
+        0 => modes[m].x,
+        1 => modes[m].v,
+        _ => modes[m].a,
+    };
+    widths.write_modes(kept, modes.len(), derivative, factors);
+    let loads = kept[widths.loads()..][..widths.axles].iter_mut();
+    for ((load, at_rest), increment) in loads.zip(at_rest).zip(increments) {
+        *load = *at_rest + *increment;
+    }
+}
+
+/// Keeps the accelerations of the bodies, which are rows over the coordinates of the vehicle.
+#[inline(always)]
+fn keep_accelerations<L: Lane>(kept: &mut [L], bodies: &[Vec<f64>], coordinates: &[Coordinate<L>]) {
+    for (acceleration, row) in kept.iter_mut().zip(bodies) {
+        let terms = row.iter().zip(coordinates);
+        *acceleration = terms.fold(L::splat(0.0), |sum, (factor, q)| sum + L::splat(*factor) * q.a);
     }
 }
 
@@ -260,6 +279,85 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
             return Err(Trouble::Failed(steps.end - 1, None));
         }
         stop.check().map_err(|_| Trouble::Interrupted)
+    }
+}
+
+/// The same with the own steps of a gait: on K contacts, with N coordinates.
+struct Striding<'s, 'g, 'a, L, const K: usize, const N: usize, const LAW: u8>(Stepping<'s, 'g, 'a, L>);
+
+impl<L: Lane, const K: usize, const N: usize, const LAW: u8> Work for Striding<'_, '_, '_, L, K, N, LAW> {
+    type Output = Result<(), Trouble>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Stepping { traveller, steppers, tape, place, steps, stop, .. } = self.0;
+        let widths = tape.widths;
+        let Traveller { group, state, static_loads, .. } = &mut *traveller;
+        let Group { geometry, bridge, bodies, .. } = &mut **group;
+        let (approach, static_loads) = (place == Where::Approach, &static_loads[..K]);
+        let stepper = if approach { &steppers.approach } else { &steppers.bridge };
+        let mut swift = Swift::<L, K, N, LAW>::new(stepper, state, geometry.speed);
+        let alone = Coupling::alone(&steppers.approach);
+        let modes = &mut state.modes[..];
+        let rows = tape.rows_mut(steps.clone()).chunks_exact_mut(widths.all());
+        for (step, row) in steps.clone().zip(rows) {
+            if step > 0 {
+                let interaction = if approach { None } else { geometry.interaction_at(step) };
+                let under = geometry.under(step, LAW == DAMPERS);
+                if !swift.step(modes, interaction.unwrap_or_default(), &alone, under) {
+                    return Err(Trouble::Failed(step, Some(Unsettled::ContactForces)));
+                }
+            }
+            keep(row, &widths, modes, bridge.as_ref(), (static_loads, &swift.increments));
+            keep_accelerations(&mut row[widths.accelerations()..], bodies, &swift.coordinates);
+        }
+        swift.end(state);
+        geometry.go_to(steps.end - 1);
+        if place == Where::Tail {
+            for step in steps.clone() {
+                traveller.end(step, tape.row_mut(step));
+            }
+        }
+        if !traveller.sound(steps.end - 1) {
+            return Err(Trouble::Failed(steps.end - 1, None));
+        }
+        stop.check().map_err(|_| Trouble::Interrupted)
+    }
+}
+
+impl<L: Lanes> Stepping<'_, '_, '_, L> {
+    /// Takes the steps, as the gait of the vehicle has them if it is a usual one.
+    fn go(self) -> Result<(), Trouble> {
+        let approach = self.place == Where::Approach;
+        let stepper = if approach { &self.steppers.approach } else { &self.steppers.bridge };
+        let known = approach || self.traveller.group.geometry.interaction_at(self.steps.start).is_some();
+        let gait = stepper.gait().filter(|_| known && !self.scene.closely);
+        // Debug builds know none: they change no bit and take most of the time to compile.
+        macro_rules! gaits {
+            ($(($law:ident $number:ident $contacts:literal $coordinates:literal)),*) => {
+                match gait {
+                    $(Some(Gait { contacts: $contacts, coordinates: $coordinates, law: Standing::$law })
+                        if !cfg!(debug_assertions) =>
+                    {
+                        L::dispatch(Striding::<L, $contacts, $coordinates, $number>(self))
+                    })*
+                    _ => L::dispatch(self),
+                }
+            };
+        }
+        gaits!(
+            (Coulomb COULOMB 2 2),
+            (Coulomb COULOMB 3 2),
+            (Coulomb COULOMB 4 2),
+            (Coulomb COULOMB 5 2),
+            (Springs SPRINGS 1 2),
+            (Springs SPRINGS 2 4),
+            (Springs SPRINGS 3 6),
+            (Springs SPRINGS 5 8),
+            (Dampers DAMPERS 2 4),
+            (Dampers DAMPERS 3 6),
+            (Dampers DAMPERS 5 8)
+        )
     }
 }
 
@@ -375,24 +473,6 @@ impl<L: Lane> Work for TakingIn<'_, L> {
     }
 }
 
-/// The responses at the steps of a tape being searched.
-struct Searching<'s, L> {
-    peaks: &'s mut [Peaks<L>],
-    look: &'s Selection,
-    tape: &'s Tape<L>,
-    chunks: Option<&'s [Chunk]>,
-    glanced: &'s mut Vec<[L; 2]>,
-}
-
-impl<L: Lane> Work for Searching<'_, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        search(self.peaks, &self.look.rows, self.tape, self.chunks, self.glanced);
-    }
-}
-
 /// Looks at the responses at the steps of a tape, with axles on the bridge or not.
 fn look_at_steps<L: Lanes>(
     scene: &Scene<'_>,
@@ -415,7 +495,19 @@ fn look_at_steps<L: Lanes>(
         return all.look(rows, look, [peaks]);
     }
     let chunks = loaded.then(|| table.chunks(steps.start, steps.end, rows, look, own_chunks));
-    L::dispatch(Searching { peaks, look, tape, chunks, glanced });
+    // What is known when this is compiled runs much faster: the usual numbers of modes and axles. Not in debug builds,
+    // which it would make long.
+    macro_rules! sizes {
+        ($($c:literal $a:literal),*) => {
+            match (rows.width(), if loaded { table.axles() } else { 0 }) {
+                $(($c, $a) if !cfg!(debug_assertions) => {
+                    L::dispatch(Searching::<L, $c, $a> { peaks, factors: &look.factors, tape, chunks, glanced })
+                })*
+                _ => L::dispatch(Searching::<L, 0, 0> { peaks, factors: &look.factors, tape, chunks, glanced }),
+            }
+        };
+    }
+    sizes!(1 2, 2 2, 3 2, 4 2, 5 2, 6 2, 3 3, 6 3, 3 5, 6 5)
 }
 
 /// Marches a group of samples through the table.
@@ -470,7 +562,7 @@ pub fn cross_group<L: Lanes>(
         if !with_vehicle.is_empty() {
             let stepping =
                 Stepping { traveller: &mut traveller, steppers, scene, tape, place, steps: with_vehicle, stop };
-            L::dispatch(stepping)?;
+            stepping.go()?;
         }
         if place == Where::Tail {
             let reach = &mut found.reach;

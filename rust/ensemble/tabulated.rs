@@ -4,10 +4,12 @@ use std::sync::OnceLock;
 
 use super::table::{Below, Table};
 use crate::coordinate::Coordinate;
+use crate::geometry::pavement::Share;
 use crate::geometry::{Geometry, Surface};
 use crate::lane::Lane;
 use crate::road::b_spline::weighted;
 use crate::step::stepper::Stepper;
+use crate::step::swift::{DAMPERS, SPRINGS, Standing, Under, of_mode};
 use crate::stops::Positions;
 
 /// Most numbers that [`Interactions`] keep; beyond that they are worked out in every step.
@@ -27,15 +29,24 @@ impl Interactions {
         let road = [0.0];
         let mut geometry = Tabulated::new(table, &road, speed, None);
         let mut interactions = Interactions::default();
+        let (modes, contacts, law) = (table.modes, table.axles(), stepper.gait().map(|gait| gait.law));
+        let each = of_mode(contacts, if law == Some(Standing::Dampers) { DAMPERS } else { SPRINGS });
         for row in table.first..=table.last() {
             geometry.row = row;
             geometry.step = row;
             let interaction = stepper.interaction(&geometry);
-            interactions.width = interaction.len();
+            let (of_modes, of_elements) = interaction.split_at(3 * modes * contacts);
+            interactions.width = modes * each + of_elements.len();
             if interactions.width * (table.last() + 1 - table.first) > MOST_INTERACTIONS {
                 return Interactions::default();
             }
-            interactions.numbers.extend_from_slice(interaction);
+            for m in 0..modes {
+                interactions.numbers.extend((0..3 * contacts).map(|part| of_modes[part * modes + m]));
+                if law == Some(Standing::Dampers) {
+                    interactions.numbers.extend((0..contacts).map(|contact| speed * geometry.slope(contact, m)));
+                }
+            }
+            interactions.numbers.extend_from_slice(of_elements);
         }
         interactions
     }
@@ -96,12 +107,7 @@ impl<'a, L: Lane> Tabulated<'a, L> {
                     *surface = Surface { elevation, slope, curvature: L::splat(s.curvature) };
                 }
                 Below::Own { given, taps, share } => {
-                    let mask = self.road.len() - 1;
-                    let first = taps.first & mask;
-                    let near = match self.road.get(first..).unwrap_or_default() {
-                        [a, b, c, d, ..] => [*a, *b, *c, *d],
-                        _ => [0, 1, 2, 3].map(|k| self.road[(first + k) & mask]),
-                    };
+                    let near = near(self.road, taps.first);
                     // Slope and curvature count only where the step asks for them.
                     let mut parts = [L::splat(0.0); 3];
                     for ((part, given), weights) in parts.iter_mut().zip(given).zip(taps.weights).take(self.table.kinds)
@@ -112,6 +118,33 @@ impl<'a, L: Lane> Tabulated<'a, L> {
                 }
             }
         }
+    }
+
+    /// Goes to a step.
+    #[inline(always)]
+    pub fn go_to(&mut self, step: usize) {
+        self.step = step;
+        self.row = step.min(self.table.last());
+        self.look_down();
+    }
+
+    /// What lies under the contacts at a step; slopes only if they are asked for.
+    #[inline(always)]
+    pub fn under<const K: usize>(&self, step: usize, slopes: bool) -> [Under<L>; K] {
+        let row = step.min(self.table.last());
+        let mut under = [Under { elevation: L::splat(0.0), slope: L::splat(0.0) }; K];
+        for (under, below) in under.iter_mut().zip(&self.table.below[row * K..][..K]) {
+            *under = below.under(self.road, slopes);
+        }
+        under
+    }
+
+    /// How the contacts feel the bridge at a step, if that is known: see [`Geometry::interaction`].
+    #[inline(always)]
+    pub fn interaction_at(&self, step: usize) -> Option<&'a [f64]> {
+        let Interactions { width, numbers } = self.interactions.filter(|interactions| interactions.width > 0)?;
+        let row = step.min(self.table.last()).checked_sub(self.table.first)?;
+        numbers.get(row * width..(row + 1) * width)
     }
 
     #[inline(always)]
@@ -163,8 +196,43 @@ impl<L: Lane> Geometry<L> for Tabulated<'_, L> {
 
     #[inline(always)]
     fn interaction(&self) -> Option<&[f64]> {
-        let Interactions { width, numbers } = self.interactions.filter(|interactions| interactions.width > 0)?;
-        let row = self.row.checked_sub(self.table.first)?;
-        numbers.get(row * width..(row + 1) * width)
+        self.interaction_at(self.row)
+    }
+}
+
+impl Below {
+    /// The surface of a sample whose own road has these coefficients, but for curvature; slopes only if they are asked for.
+    #[inline(always)]
+    fn under<L: Lane>(&self, road: &[L], slopes: bool) -> Under<L> {
+        let zero = L::splat(0.0);
+        match self {
+            Below::Given(s) => Under { elevation: L::splat(s.elevation), slope: L::splat(s.slope) },
+            Below::Own { given, taps, share } => {
+                let near = near(road, taps.first);
+                let elevation = L::splat(given[0]) + weighted(taps.weights[0], near);
+                let slope = if slopes { L::splat(given[1]) + weighted(taps.weights[1], near) } else { zero };
+                match *share {
+                    Share::Level => Under { elevation: zero, slope: zero },
+                    Share::Whole => Under { elevation, slope },
+                    Share::Beyond => Under { elevation, slope: zero },
+                    Share::Faded([fade, fade_1, _]) => {
+                        let (fade, fade_1) = (L::splat(fade), L::splat(fade_1));
+                        let slope = if slopes { fade * slope + fade_1 * elevation } else { zero };
+                        Under { elevation: fade * elevation, slope }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Four neighbouring coefficients of a road, from this number on.
+#[inline(always)]
+fn near<L: Lane>(road: &[L], first: usize) -> [L; 4] {
+    let mask = road.len() - 1;
+    let first = first & mask;
+    match road.get(first..).unwrap_or_default() {
+        [a, b, c, d, ..] => [*a, *b, *c, *d],
+        _ => [0, 1, 2, 3].map(|k| road[(first + k) & mask]),
     }
 }

@@ -68,6 +68,11 @@ impl<L: Lane> ModalSolve<L> {
         &self.damping
     }
 
+    /// (I + ½hD + βh²Ω²)⁻¹, in the same way.
+    pub fn inverse(&self) -> &[L] {
+        &self.inverse
+    }
+
     /// Number of modes.
     pub fn modes(&self) -> usize {
         self.omega2.len()

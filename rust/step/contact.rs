@@ -3,6 +3,7 @@
 //! The law stands at [`Contact`]; its numbers come from the [`ContactLaw`] of a vehicle.
 
 use super::friction::{Law, Stroke};
+use super::swift::Slider;
 use crate::lane::Lane;
 use crate::lane::gather::gather;
 use crate::vehicle::equations::{ContactLaw, ContactPoint};
@@ -203,6 +204,22 @@ impl<L: Lane> Contact<L> {
         self.suspension.as_ref().is_some_and(coulomb) && !self.constant
     }
 
+    /// Whether this is a tyre under a mass, or several lanes of such.
+    pub fn is_tyre(&self) -> bool {
+        let Weights { value, acceleration, .. } = self.weights;
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let massless = !(value.less(one) | one.less(value) | acceleration.less(zero) | zero.less(acceleration));
+        self.suspension.is_none() && !self.constant && L::all(massless)
+    }
+
+    /// The suspension of a massless axle with rigid Coulomb friction and without dampers.
+    #[inline(always)]
+    pub fn slider(&self) -> Option<Slider<L>> {
+        let Suspension { stiffness, give, initial, law, .. } = self.suspension?;
+        let Law::Rigid { limit } = law else { return None };
+        Some(Slider { stiffness, give, initial, limit })
+    }
+
     /// The suspension. Callers who know that it is a `coulomb` one say so in a literal, and what others do is not there.
     #[inline(always)]
     fn suspension(&self, coulomb: bool) -> Option<&Suspension<L>> {
@@ -273,10 +290,10 @@ pub const HELD: usize = 6;
 pub struct Held<L> {
     pub gain: L,
     /// By how much less p there is, per unit by which the suspension was shortened.
-    slope: L,
+    pub slope: L,
     /// 1/(1 + k S).
     softened: L,
-    share: L,
+    pub share: L,
     /// By how much less force there is for friction, per unit that the suspension moves.
     resistance: L,
     /// By how much the forces of the elements before this one may still be off, all together, per change of this one's.

@@ -7,7 +7,7 @@ use crate::lane::gather::gather;
 use crate::vehicle::equations::FrictionElement;
 
 /// Most sweeps of the coupled solve; two to four are usual.
-const SWEEPS: usize = 200;
+pub(super) const SWEEPS: usize = 200;
 
 /// Error of a contact force, relative to the weight, at which it counts as found.
 const SETTLED: f64 = 1e-13;
@@ -104,7 +104,7 @@ pub struct Elements<L> {
     /// All friction elements between parts that have mass.
     pub rubbing: Vec<Rubbing<L>>,
     /// Error of a contact force [N] at which it counts as found.
-    tolerance: L,
+    pub(super) tolerance: L,
 }
 
 gather!(Elements { contacts, rubbing, tolerance });

@@ -12,6 +12,7 @@ use super::friction::Stroke;
 use super::newmark::Newmark;
 use super::sizes::{Desk, FIVE_AXLES, FOUR_AXLES, Form, HALF_CAR, Room, THREE_AXLES, TWO_AXLES, USUAL};
 use super::stand::Stand;
+use super::swift::Gait;
 use super::unit::{Moving, Propulsion, Unit};
 use super::vehicle_step::VehicleSolve;
 use crate::coordinate::Coordinate;
@@ -82,6 +83,7 @@ impl Unsettled {
 #[derive(Debug, Clone)]
 pub struct Stepper<L> {
     pub(super) form: Form,
+    gait: Option<Gait>,
     pub(super) newmark: Newmark<L>,
     pub(super) modal: ModalSolve<L>,
     pub(super) units: Vec<Unit<L>>,
@@ -188,6 +190,7 @@ impl<L: Lane> Stepper<L> {
                 prepared: vec![Prepared::nothing(); n],
             },
             form,
+            gait: None,
             newmark,
             modal,
             units,
@@ -195,6 +198,7 @@ impl<L: Lane> Stepper<L> {
             surge_settled,
         };
         stepper.stand_alone();
+        stepper.gait = stepper.find_gait();
         stepper
     }
 
@@ -231,6 +235,12 @@ impl<L: Lane> Stepper<L> {
         self.above = above(&self.newmark, &self.units, &self.elements);
         self.form = form(&self.modal, &self.units, &self.elements);
         self.stand_alone();
+        self.gait = self.find_gait();
+    }
+
+    /// What its vehicle is like, if it is one of those that have their own steps.
+    pub fn gait(&self) -> Option<Gait> {
+        self.gait
     }
 
     /// The bridge by itself.
@@ -258,9 +268,6 @@ impl<L: Lane> Stepper<L> {
         match (form, known) {
             (TWO_AXLES, _) if !cfg!(debug_assertions) => {
                 return self.drive(TWO_AXLES, state, geometry, None, &mut usual.desk());
-            }
-            (USUAL, Some(_)) if !cfg!(debug_assertions) => {
-                return self.drive(USUAL, state, geometry, known, &mut usual.desk());
             }
             (USUAL, None) if !cfg!(debug_assertions) => {
                 return self.drive(USUAL, state, geometry, None, &mut usual.desk());
@@ -371,7 +378,16 @@ impl<L: Lane> Stepper<L> {
         match known {
             _ if form.modes == 0 => desk.interaction[..form.width()].copy_from_slice(&self.alone[..form.width()]),
             Some(numbers) => {
-                for (own, number) in desk.interaction[..form.width()].iter_mut().zip(&numbers[..form.width()]) {
+                let (modes, contacts, [_, _, of_all, _, end]) = (form.modes, form.contacts(), form.parts());
+                let (of_modes, of_elements) = numbers.split_at(numbers.len() - (end - of_all));
+                for (m, own) in of_modes.chunks_exact(of_modes.len() / modes).enumerate() {
+                    for (part, own) in own.chunks_exact(contacts).take(3).enumerate() {
+                        for (k, number) in own.iter().enumerate() {
+                            desk.interaction[(part * contacts + k) * modes + m] = L::splat(*number);
+                        }
+                    }
+                }
+                for (own, number) in desk.interaction[of_all..end].iter_mut().zip(of_elements) {
                     *own = L::splat(*number);
                 }
             }

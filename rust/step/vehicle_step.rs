@@ -112,6 +112,25 @@ impl<L: Lane> VehicleSolve<L> {
         }
     }
 
+    /// C, K and (M + ½hC + βh²K)⁻¹ by rows; the first two empty where both are zero.
+    pub fn matrices(&self) -> [&[L]; 3] {
+        let [damping, stiffness] = match &self.linear {
+            Some(Linear { damping, stiffness }) => [&damping[..], stiffness],
+            None => [&[][..]; 2],
+        };
+        [damping, stiffness, &self.inverse]
+    }
+
+    /// Shortening of each element per unit of each coordinate, by rows.
+    pub fn rows(&self) -> &[L] {
+        &self.rows
+    }
+
+    /// Accelerations under unit element forces, element by element.
+    pub fn receptance(&self) -> &[L] {
+        &self.receptance
+    }
+
     /// Whether there are no springs and dampers between the coordinates.
     pub fn bare(&self) -> bool {
         self.linear.is_none()
