@@ -14,6 +14,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 import spanwise as sw
+from spanwise.roads import Road
 
 Mover: TypeAlias = sw.Vehicle | sw.ForceTrain | sw.MovingMasses
 
@@ -41,8 +42,9 @@ VEHICLES: Final[dict[str, Mover]] = {
     "two masses": sw.MovingMasses(masses=[8e3, 12e3], spacings=[4.0]),
 }
 
-ROADS: Final[dict[str, list[sw.ISO8608 | None]]] = {
+ROADS: Final[dict[str, list[Road | None]]] = {
     "smooth": [None],
+    "bump": [sw.Bump(at=-2.0, length=length, height=0.03) for length in (0.5, 3.0)],
     **{grade: [sw.ISO8608(grade, seed=seed) for seed in (3, 7)] for grade in "ABCE"},
 }
 
@@ -61,7 +63,7 @@ def error(coarse: sw.Run, fine: sw.Run, name: str) -> float:
     return float(np.abs(found - right).max() / np.abs(right).max())
 
 
-def errors(vehicle: Mover, roads: list[sw.ISO8608 | None]) -> Iterator[tuple[float, float]]:
+def errors(vehicle: Mover, roads: list[Road | None]) -> Iterator[tuple[float, float]]:
     """Of responses and axle loads, and of the acceleration of the deck, case by case."""
     for bridge, modes in BRIDGES:
         for speed in SPEEDS:

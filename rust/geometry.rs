@@ -53,7 +53,7 @@ pub trait Geometry<L: Lane> {
     fn surface(&self, contact: usize) -> Surface<L>;
 
     /// The [`Stepper::interaction`](crate::step::stepper::Stepper::interaction) of this place, where it is known, the same in
-    /// all lanes: first what is of modes, mode by mode as [`of_mode`](crate::step::swift::of_mode) has it.
+    /// all lanes: first what is of modes, mode by mode as [`of_mode`](crate::step::gait::of_mode) has it.
     fn interaction(&self) -> Option<&[f64]> {
         None
     }

@@ -238,12 +238,12 @@ impl Road {
         })
     }
 
-    /// How rough it is.
-    pub fn texture(&self) -> Texture {
+    /// How rough it is from `from` to `to` [m].
+    pub fn texture(&self, from: f64, to: f64) -> Texture {
         let of = |part: &Part| match part {
             Part::Random(random) => random.texture(),
-            Part::Profile(profile) => profile.texture(),
-            Part::Feature(feature) => Texture { finest: feature.finest(), ..Texture::SMOOTH },
+            Part::Profile(profile) => profile.texture(from, to),
+            Part::Feature(feature) => Texture { finest: feature.finest(from, to), ..Texture::SMOOTH },
             Part::Datum(_) => Texture::SMOOTH,
         };
         self.parts.iter().map(of).fold(Texture::SMOOTH, Texture::with)

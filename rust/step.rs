@@ -5,13 +5,14 @@
 //! unknowns of δ = u − S p: S is the [`compliance`], u the gap without their increments, and the [`coupled_forces`] are
 //! solved for together by the [`stepper`]. It begins with vehicles that [`stand`] where the crossing [`start`]s; those
 //! in [`rolling`] go where the step takes them. Where a step's [`sizes`] are known, the compiler is told; the usual
-//! vehicles have steps of their own ([`swift`]). Once all have left there is free [`vibration`].
+//! vehicles, told by their [`gait`], have steps of their own ([`swift`]). Once all have left there is free [`vibration`].
 
 pub(crate) mod bridge_step;
 pub(crate) mod compliance;
 pub(crate) mod contact;
 pub(crate) mod coupled_forces;
 pub(crate) mod friction;
+pub(crate) mod gait;
 pub(crate) mod newmark;
 pub(crate) mod rolling;
 pub(crate) mod sizes;
@@ -27,8 +28,8 @@ pub use bridge_step::ModalSolve;
 pub use contact::{Contact, HELD, Prepared};
 pub use coupled_forces::Elements;
 pub use friction::{Law, Stroke};
+pub use gait::{Gait, Standing};
 pub use newmark::Newmark;
 pub use stepper::{Scheme, State, Stepper};
-pub use swift::{Gait, Standing};
 pub use unit::{Moving, Propulsion};
 pub use vibration::{LOOK_EVERY, PERIODS, Reach, Vibration};

@@ -641,7 +641,7 @@ fn the_datum_of_a_sum_is_the_sum() {
     // Nothing else of the road is another.
     let felt = both.off(both.datum(-20.0, 30.0));
     assert_eq!((felt.ends(), felt.period()), (both.ends(), both.period()));
-    assert_eq!((felt.texture(), felt.smoothness()), (both.texture(), both.smoothness()));
+    assert_eq!((felt.texture(0.0, 9.0), felt.smoothness()), (both.texture(0.0, 9.0), both.smoothness()));
 }
 
 // Golden car.

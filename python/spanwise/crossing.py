@@ -100,8 +100,8 @@ def cross(
         What extremes may be off because time goes in steps, in parts of the largest of each
         response along the bridge: the step follows from it, by the frequencies of bridge and
         vehicles, the spans and how rough the road is. docs/theory.md, "Time step", tells how, how
-        far it was tried, and where it does not hold (accelerations of the deck, damped tyres that
-        meet a lively bridge, very rough roads).
+        far it was tried, and where it does not hold (accelerations of the deck, damped tyres and
+        masses that meet a lively bridge, very rough roads).
     step : float, optional
         Longest time step [s], in place of the one that follows.
     beta : float, optional

@@ -224,7 +224,7 @@ impl Study {
         let vehicle = self.vehicle(kind);
         let path = self.settings.approach + model.shapes.mesh().length() + vehicle.wheelbase();
         let longest = self.advance.unwrap_or_else(|| {
-            let mut road = self.settings.road.texture();
+            let mut road = self.settings.road.texture(-self.settings.approach, path - self.settings.approach);
             if let Some((own, _)) = &self.own {
                 road = road.with(own.texture());
             }

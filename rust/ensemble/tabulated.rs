@@ -8,8 +8,9 @@ use crate::geometry::pavement::Share;
 use crate::geometry::{Geometry, Surface};
 use crate::lane::Lane;
 use crate::road::b_spline::weighted;
+use crate::step::gait::{DAMPERS, SPRINGS, Standing, of_mode};
 use crate::step::stepper::Stepper;
-use crate::step::swift::{DAMPERS, SPRINGS, Standing, Under, of_mode};
+use crate::step::swift::Under;
 use crate::stops::Positions;
 
 /// Most numbers that [`Interactions`] keep; beyond that they are worked out in every step.

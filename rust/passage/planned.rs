@@ -191,7 +191,7 @@ impl<'a> Course<'a> {
     }
 
     /// Where it is after a way from the end at which it enters, seen from the left end of the bridge [m].
-    fn place(&self, way: f64, length: f64) -> f64 {
+    pub fn place(&self, way: f64, length: f64) -> f64 {
         if self.direction == Direction::Right { way } else { length - way }
     }
 

@@ -48,17 +48,21 @@ const STEPS_PER_SPAN: f64 = 100.0;
 /// Way per step on a road whose slopes have the root mean square [`SLOPE`] [m].
 const ROUGH: f64 = 0.05;
 
-/// Slopes between those of class A, 0.0028, and of class B, 0.0056, under the usual contact patch [-].
-const SLOPE: f64 = 4e-3;
+/// Slopes between those of class A, 0.0034, and of class B, 0.0069, under the usual contact patch [-].
+const SLOPE: f64 = 5e-3;
 
 /// Way per step on the roughest roads that vehicles cross [m].
 const ROUGHEST: f64 = 0.005;
 
-/// Way per step of tyres with dampers and of masses without tyres, on whatever road [m].
+/// Steps to the shortest edge or contact patch of single features.
+const STEPS_PER_EDGE: f64 = 30.0;
+
+/// Way per step of tyres with dampers and of masses without tyres, on whatever road [m]; what they are off by goes with
+/// the step, not with its square.
 const JUMPS: f64 = 0.025;
 
-/// Wave number times way per step of masses without tyres: (2πn·way)²/8 of a wave is missed at most [-].
-const RIGID: f64 = 0.09;
+/// Wave number times way per step of masses without tyres, of which nothing takes the edge off a wave [-].
+const RIGID: f64 = 0.03;
 
 /// Periods over which an error of the period adds up.
 const PERIODS: f64 = 2.4;
@@ -92,8 +96,12 @@ impl Steps {
         let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
         let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
         let way = |course: &Course<'_>| {
-            let (road, vehicle) = (&course.road, course.vehicle.assembly());
-            fineness.way(model.shortest_span, road.texture(), vehicle)
+            let [from, to] = course.paved(settings, length).map(|way| course.place(way, length));
+            fineness.way(
+                model.shortest_span,
+                course.road.texture(from.min(to), from.max(to)),
+                course.vehicle.assembly(),
+            )
         };
         let way = courses.iter().map(way).fold(f64::INFINITY, f64::min);
         let usual = resolved.min(way / speed).min(limit);
@@ -197,7 +205,7 @@ impl Steps {
             way *= 0.5;
             halvings += 1;
         }
-        (f64::from(halvings).exp2(), halvings)
+        (f64::from(1_u32 << halvings), halvings)
     }
 }
 
@@ -214,6 +222,8 @@ pub fn room(count: f64, bytes: f64) -> f64 {
 /// What the length of a step follows from, but for the speed.
 #[derive(Debug, Clone, Copy)]
 pub struct Fineness {
+    /// The accuracy, by that for which the limits are stated.
+    accuracy: f64,
     /// How much longer than stated steps may be.
     scale: f64,
 }
@@ -221,9 +231,10 @@ pub struct Fineness {
 impl Fineness {
     /// Of the settings.
     pub fn of(settings: &Settings) -> Self {
-        // Half a sampling error (ωh)²/8 to begin with; then the phase 2π·periods·(β − 1/12)(ωh)²/2 beside it.
+        // Beside what lies between two steps, (ωh)²/8, the phase 2π·periods·(β − 1/12)(ωh)²/2.
         let beside = 8.0 * std::f64::consts::PI * PERIODS * (settings.beta - FOX_GOODWIN).max(0.0);
-        Fineness { scale: (settings.accuracy / STATED / (1.0 + beside)).sqrt() }
+        let accuracy = settings.accuracy / STATED;
+        Fineness { accuracy, scale: (accuracy / (1.0 + beside)).sqrt() }
     }
 
     /// Longest step that resolves vibrations up to this circular frequency [rad/s] [s].
@@ -243,12 +254,12 @@ impl Fineness {
             way = way.min((ROUGH * (SLOPE / road.slope_power.sqrt()).sqrt()).max(ROUGHEST));
         }
         if laws().any(|law| !law.is_plain()) {
-            way = way.min(JUMPS);
+            way = way.min(JUMPS * self.accuracy.sqrt());
         }
         if laws().any(|law| matches!(law, ContactLaw::Mass(_))) {
             way = way.min(RIGID / (std::f64::consts::TAU * road.highest));
         }
-        self.scale * way.min(0.5 * road.finest)
+        self.scale * way.min(road.finest / STEPS_PER_EDGE)
     }
 }
 

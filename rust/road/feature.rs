@@ -78,12 +78,17 @@ impl Feature {
         least + i32::from(self.patch.length() > 0.0)
     }
 
-    /// The shortest way over which it changes [m]: an edge and the contact patch together; infinite if it jumps.
-    pub fn finest(&self) -> f64 {
-        let lengths = self.pieces.iter().map(|piece| match *piece {
-            Piece::Smooth { length, .. } | Piece::Straight { length, .. } | Piece::Arch { length, .. } => length,
+    /// The shortest way over which it changes between `from` and `to` [m]: an edge and the contact patch together;
+    /// infinite if it jumps.
+    pub fn finest(&self, from: f64, to: f64) -> f64 {
+        let patch = self.patch.length();
+        let ends = self.pieces.iter().map(|piece| match *piece {
+            Piece::Smooth { start, length, .. }
+            | Piece::Straight { start, length, .. }
+            | Piece::Arch { start, length, .. } => (start, length),
         });
-        let ways = lengths.map(|length| length + self.patch.length()).filter(|way| *way > 0.0);
+        let there = ends.filter(|(start, length)| start - patch <= to && start + length + patch >= from);
+        let ways = there.map(|(_, length)| length + patch).filter(|way| *way > 0.0);
         ways.fold(f64::INFINITY, f64::min)
     }
 

@@ -22,8 +22,11 @@ const GAP: f64 = 5.0;
 /// Numbers for each point while the spline is made, twelve at most, and what is kept of them [bytes].
 const POINT: usize = 12 * size_of::<f64>();
 
-/// Places at which the slope of a profile is looked at.
+/// Places at which the slopes of a profile are looked at.
 const SLOPES: usize = 1024;
+
+/// Stretches of a way, the roughest of which counts.
+const STRETCHES: usize = 8;
 
 /// Part of a section that must be measured as finely as its spacing says.
 const MOST_OF_IT: f64 = 0.9;
@@ -39,7 +42,6 @@ pub struct Profile {
     /// Integral of the elevation from the first point to each [m²].
     integrals: Vec<f64>,
     patch: Patch,
-    texture: Texture,
 }
 
 impl Profile {
@@ -73,28 +75,25 @@ impl Profile {
             let area = h * (a + h * (b / 2.0 + h * (c / 3.0 + h * d / 4.0)));
             integrals.push(integrals[integrals.len() - 1] + area);
         }
-        Profile { x, base, cubics, integrals, patch, texture: Texture::SMOOTH }.measured()
+        Profile { x, base, cubics, integrals, patch }
     }
 
-    /// With its texture worked out: slopes off their mean at some places evenly along it, and its finest points.
-    fn measured(mut self) -> Self {
-        let [from, to] = self.ends();
+    /// How rough it is from `from` to `to` [m], where it is rougher than elsewhere on that way: its slopes off their mean,
+    /// and its finest points.
+    pub fn texture(&self, from: f64, to: f64) -> Texture {
+        let [first, last] = self.ends();
+        let (from, to) = (from.clamp(first, last), to.clamp(first, last));
         let slope = |i: usize| self.at(from + (to - from) * (i as f64 + 0.5) / SLOPES as f64).slope;
         let slopes: Vec<f64> = (0..SLOPES).map(slope).collect();
         let mean = slopes.iter().sum::<f64>() / SLOPES as f64;
-        let slope_power = slopes.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>() / SLOPES as f64;
-        self.texture = Texture { slope_power, highest: 0.5 / self.spacing(from, to), ..Texture::SMOOTH };
-        self
-    }
-
-    /// How rough it is.
-    pub fn texture(&self) -> Texture {
-        self.texture
+        let power = |some: &[f64]| some.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>() / some.len() as f64;
+        let slope_power = slopes.chunks(SLOPES / STRETCHES).map(power).fold(0.0, f64::max);
+        Texture { slope_power, highest: 0.5 / self.spacing(from, to), ..Texture::SMOOTH }
     }
 
     /// The same under another contact patch.
     pub fn under(&self, patch: Patch) -> Self {
-        Profile { patch, ..self.clone() }.measured()
+        Profile { patch, ..self.clone() }
     }
 
     /// The straight lines from point to point under a contact patch, from elevation 0 on.

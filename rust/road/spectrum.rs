@@ -1,6 +1,7 @@
 //! Roughness after ISO 8608: a power law of the wave number, and its classes.
 
 use super::texture::Texture;
+use super::turn::sinc;
 use crate::error::{Error, finite, not_negative, positive};
 
 /// Wave number n₀ at which the roughness is stated [cycle/m].
@@ -78,15 +79,14 @@ impl Spectrum {
         self.power(self.band[0], self.band[1])
     }
 
-    /// How rough such roads are for a wheel whose contact patch averages over a length [m]; the slope by bands, of waves
-    /// shorter than the patch as much as it leaves of them on average.
+    /// How rough such roads are for a wheel whose contact patch averages over a length [m]; the slope by bands.
     pub fn texture(&self, patch: f64) -> Texture {
         let [from, to] = self.band;
         let ratio = libm::pow(to / from, 1.0 / BANDS as f64);
         let edges: Vec<f64> = (0..=BANDS).map(|i| from * libm::pow(ratio, i as f64)).collect();
         let slope = |edges: &[f64]| {
             let waves = std::f64::consts::TAU * (edges[0] * edges[1]).sqrt();
-            self.power(edges[0], edges[1]) * waves.powi(2) / (1.0 + 0.5 * (waves * patch).powi(2))
+            self.power(edges[0], edges[1]) * (waves * sinc(waves / std::f64::consts::TAU * patch)).powi(2)
         };
         Texture { slope_power: edges.windows(2).map(slope).sum(), highest: to, ..Texture::SMOOTH }
     }

@@ -3,7 +3,7 @@
 //! The law stands at [`Contact`]; its numbers come from the [`ContactLaw`] of a vehicle.
 
 use super::friction::{Law, Stroke};
-use super::swift::Slider;
+use super::gait::Slider;
 use crate::lane::Lane;
 use crate::lane::gather::gather;
 use crate::vehicle::equations::{ContactLaw, ContactPoint};

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import spanwise as sw
+from spanwise.roads import Road
 
 #: Responses and axle loads, each judged by its largest value along the bridge.
 LOOKED_AT: Final = ("deflection", "moment", "shear", "reactions", "axle_loads")
@@ -29,7 +30,12 @@ VEHICLES: Final[dict[str, sw.Vehicle | sw.ForceTrain]] = {
     "cl-625": sw.vehicles.cl_625(),
 }
 
-ROADS: Final = {"smooth": None, "A": sw.ISO8608("A", seed=3), "C": sw.ISO8608("C", seed=4)}
+ROADS: Final[dict[str, Road | None]] = {
+    "smooth": None,
+    "A": sw.ISO8608("A", seed=3),
+    "C": sw.ISO8608("C", seed=4),
+    "bump": sw.Bump(at=-2.0, length=0.5, height=0.02),
+}
 
 
 def crossed(bridge: str, vehicle: str, road: str, **settings: Any) -> sw.Run:
