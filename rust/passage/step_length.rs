@@ -188,9 +188,7 @@ impl Steps {
         let promise = memory::promise(key, value, kept * bytes, MAX_HISTORY_BYTES, &format!("{kept:.3e} steps"), mend)?;
         Ok(Steps { h, count: count as usize, tail, advance, _promise: promise })
     }
-}
 
-impl Steps {
     /// How many steps of a way at most [m] a path takes, and the way of each.
     pub fn in_space(path: f64, longest: f64) -> (usize, f64) {
         let steps = (path / longest - 1e-9).ceil().max(1.0);
