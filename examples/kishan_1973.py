@@ -272,6 +272,7 @@ def relative_error(run: sw.Run, reference: sw.Run, quantity: str) -> float:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG and as SVG, the latter the same to the last byte every time."""
     figure.savefig(path.with_suffix(".png"), dpi=200)
+    figure.set_layout_engine("none")  # it is laid out
     with mpl.rc_context({"svg.hashsalt": "kishan-1973"}):
         figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
 

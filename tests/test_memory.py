@@ -62,7 +62,7 @@ ASKED = [
     ("sw.ISO8608('A').elevation(np.zeros(15 * 10**6))", "InputError x = "),
     ("sw.ensemble(bridge, truck, samples=4, threads=4096, advance=0.1, **given)", ""),
     (
-        "e = sw.ensemble(bridge, truck, samples=200_000, advance=0.5, approach=0.0, beta=0.25, "
+        "e = sw.ensemble(bridge, truck, samples=100_000, advance=2.0, approach=0.0, beta=0.25, "
         "quantities=['moment'], "
         "**given); e.to_npz(PATH)",
         None,

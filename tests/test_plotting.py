@@ -84,8 +84,8 @@ def labels(figure: matplotlib.figure.Figure) -> str:
     return " ".join(found)
 
 
-#: What the diagrams drawn so far are made of.
-DRAWN: set[tuple[tuple[object, ...], ...]] = set()
+#: What the figures laid out so far are made of.
+LAID_OUT: set[tuple[object, ...]] = set()
 
 
 def check(figure: matplotlib.figure.Figure, *units: str) -> None:
@@ -94,16 +94,16 @@ def check(figure: matplotlib.figure.Figure, *units: str) -> None:
     written = labels(figure)
     for unit in units:
         assert f"[{unit}]" in written, written
-    # Models differ from scene to scene; of diagrams of as many parts one is drawn.
+    # Of those with axes alike one is laid out; models differ from scene to scene, and are drawn.
     diagram = figure.get_supylabel() or any(ax.get_ylabel() for ax in figure.axes)
-    alike = tuple(
-        (ax.get_xlabel(), len(ax.lines), len(ax.texts), len(ax.patches), len(ax.child_axes))
-        for ax in figure.axes
-    )
-    if not diagram or alike not in DRAWN:
+    axes = {(ax.get_xlabel(), len(ax.child_axes)) for ax in figure.axes}
+    alike = (bool(diagram), len(figure.subfigs), *sorted(axes))
+    if alike in LAID_OUT:
+        figure.set_layout_engine("none")
+    if alike not in LAID_OUT or not diagram:
         # Without pixels, which the figures of the command line have.
         figure.draw_without_rendering()
-    DRAWN.add(alike)
+    LAID_OUT.add(alike)
 
 
 def only_axes(figure: matplotlib.figure.Figure) -> Axes:

@@ -61,12 +61,12 @@ def test_a_damped_tyre_cannot_follow_a_jump() -> None:
 
 def test_the_step_resolves_a_short_contact_patch() -> None:
     """Wherever the step of the road lies between two steps of time, the tyre feels it."""
-    largest = [
-        sw.cross(
-            BEAM, TYRE, speed=20.0, road=sw.Step(3.0 + shift, 0.01, contact_patch=0.005)
-        ).axle_loads.max()
-        for shift in (0.0, 0.0011, 0.0023, 0.0034, 0.0046)
-    ]
+    short = sw.Bridge(spans=[4.0], EI=2e9, mass=5e3)
+    settings: Any = {"speed": 20.0, "approach": 0.0, "tail": 0.0, "modes": 1, "sections": [2.0]}
+    largest = []
+    for shift in (0.0, 0.0011, 0.0023, 0.0034, 0.0046):
+        road = sw.Step(1.0 + shift, 0.01, contact_patch=0.005)
+        largest.append(sw.cross(short, TYRE, road=road, **settings).axle_loads.max())
     assert np.ptp(largest) < 0.1 * np.mean(largest)
 
 

@@ -29,6 +29,7 @@ def figure_files(run: Run) -> Iterator[tuple[str, bytes]]:
     for name, figure in figures:
         png, svg = BytesIO(), BytesIO()
         figure.savefig(png, format="png", dpi=200)
+        figure.set_layout_engine("none")  # it is laid out
         # The same run gives the same file.
         with matplotlib.rc_context({"svg.hashsalt": "spanwise"}):
             figure.savefig(svg, format="svg", metadata={"Date": None})

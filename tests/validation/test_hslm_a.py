@@ -86,7 +86,7 @@ def test_deflections_and_accelerations(name: str) -> None:
         sections=SECTIONS,
         quantities=["deflection", "acceleration"],
         approach=0.0,
-        advance=0.0125,
+        advance=0.05,
     )
     deflection, acceleration = found.envelope("deflection"), found.envelope("acceleration")
     largest = np.maximum(acceleration.max.max(axis=1), -acceleration.min.min(axis=1))
