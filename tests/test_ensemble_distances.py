@@ -38,7 +38,7 @@ THREE = {
 
 def check(vehicle: Any, factors: dict[str, Any], same: Same, **given: Any) -> None:
     found = sw.ensemble(
-        BRIDGE, vehicle, samples=3, factors=factors, advance=0.05, **{**GIVEN, **given}
+        BRIDGE, vehicle, samples=3, factors=factors, advance=0.1, **{**GIVEN, **given}
     )
     for sample in range(3):
         run = found.run(sample)

@@ -43,9 +43,9 @@ def varied(first: int, count: int) -> dict[str, Any]:
     }
 
 
-#: Ensembles by what they are like: of samples `first` to `first + count`.
-def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
-    given: dict[str, Any] = {
+def common(first: int, count: int) -> dict[str, Any]:
+    """What all are asked for."""
+    return {
         "samples": count,
         "first": first,
         "seed": 5,
@@ -53,8 +53,14 @@ def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
         "damping": 0.02,
         "road": sw.ISO8608("C") + sw.Bump(3.0, 0.5, 0.01),
         "approach": 20.0,
+        "accuracy": 0.02,
         "sections": [5.0, 9.0, 18.0, 24.0],
     }
+
+
+#: Ensembles by what they are like: of samples `first` to `first + count`.
+def made(name: str, first: int = 0, count: int = COUNT) -> sw.Ensemble:
+    given = common(first, count)
     if name == "side by side":
         return sw.ensemble(BRIDGE, TRUCK, speed=20.0, **given)
     if name == "varied":
@@ -168,13 +174,13 @@ def test_parts_make_the_whole(name: str, cuts: tuple[int, ...], tmp_path: Path) 
     assert sw.concat(mixed).settings.keys() == whole(name).settings.keys()
 
 
-def part(first: int, count: int) -> sw.Ensemble:
-    return made("varied", first, count)
-
-
 def test_parts_of_other_processes() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        parts = [*pool.map(part, [0, 7], [7, 5])]
+        begun = [
+            pool.submit(sw.ensemble, BRIDGE, [TRUCK, CAR], **(common(*some) | varied(*some)))
+            for some in ((0, 7), (7, 5))
+        ]
+        parts = [each.result() for each in begun]
     check_equal(sw.concat(parts), whole("varied"))
 
 
@@ -235,7 +241,7 @@ def test_constants_that_differ_from_part_to_part() -> None:
 
 
 def test_parts_of_another_version() -> None:
-    one, two = part(0, 5), part(5, 7)
+    one, two = made("varied", 0, 5), made("varied", 5, 7)
     two._rows.columns["news"] = (0, 0)
     with pytest.raises(
         ValueError, match=r"ensembles\[1\]: is of another version than ensembles\[0\]"

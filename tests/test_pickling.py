@@ -13,11 +13,6 @@ import pytest
 import spanwise as sw
 
 
-def largest_moment(bridge: sw.Bridge, vehicle: sw.Vehicle, speed: float) -> float:
-    run = sw.cross(bridge, vehicle, speed=speed)
-    return float(run.envelope("moment").max.value.max())
-
-
 @pytest.fixture
 def bridge() -> sw.Bridge:
     return sw.Bridge(
@@ -55,5 +50,6 @@ def test_copies_of_the_catalogue_are_the_same(name: str) -> None:
 def test_crossings_in_other_processes(bridge: sw.Bridge) -> None:
     vehicle = sw.vehicles.kishan_1973()
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        there = pool.submit(largest_moment, bridge, vehicle, 20.0).result()
-    assert there == largest_moment(bridge, vehicle, 20.0)
+        there = pool.submit(sw.cross, bridge, vehicle, speed=20.0).result()
+    here = sw.cross(bridge, vehicle, speed=20.0)
+    assert there.envelope("moment") == here.envelope("moment")
