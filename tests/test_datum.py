@@ -97,7 +97,7 @@ def test_masses_that_follow_the_road() -> None:
 
     def crossing(height: float, grade: float) -> sw.Run:
         road = sw.Profile(x, waves + height + grade * x)
-        return sw.cross(BRIDGE, masses, speed=20.0, road=road)
+        return sw.cross(BRIDGE, masses, speed=20.0, road=road, accuracy=0.02)
 
     for height, grade in [(40.0, 0.0), (0.0, 0.04)]:
         check_alike(crossing(0.0, 0.0), crossing(height, grade))

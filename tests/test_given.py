@@ -22,7 +22,7 @@ QUANTITIES = ("deflection", "moment", "shear_left", "shear_right", "reactions", 
 
 
 def crossing(bridge: sw.Bridge, sections: list[float], **changes: Any) -> sw.Run:
-    settings = {"speed": 23.0, "modes": 3, "damping": 0.02, "step": 2e-3, "tail": 0.2}
+    settings = {"speed": 23.0, "modes": 3, "damping": 0.02, "step": 5e-3, "tail": 0.2}
     vehicle = sw.vehicles.kishan_1973()
     return sw.cross(bridge, vehicle, **{**settings, "sections": sections, **changes})
 

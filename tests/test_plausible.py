@@ -65,7 +65,7 @@ def profile(spacing: float, x: float = 1.0, z: float = 1.0) -> sw.Profile:
 DOUBTED: Final[list[tuple[Callable[[Any], object], str]]] = [
     (lambda go: go(bridge(EI=EI / 1e3), car()), r"^EI, mass: .*kN m2"),
     (lambda go: go(bridge(EI=EI / 1e6), car(), lift_off=False), r"^EI, mass: .*MPa"),
-    (lambda go: go(bridge(EI=EI * 1e6), car()), r"^EI, mass: .*N mm2"),
+    (lambda go: go(bridge(EI=EI * 1e6), car(), accuracy=0.1), r"^EI, mass: .*N mm2"),
     (lambda go: go(bridge(mass=MASS / 1e3), car()), r"^EI, mass: .*t/m"),
     (lambda go: go(bridge(mass=MASS * 200.0), car()), r"^EI, mass: .*instead of kg/m"),
     (lambda go: go(bridge(), forces(1e8, 1e8)), r"^loads, EI: .*by about .* m; are loads in N"),
@@ -117,13 +117,8 @@ def test_crossings_are_doubted(
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         call(go)
-    found = [each for each in told if re.search(says, str(each.message))]
-    assert len(found) == 1
-    assert found[0].category is sw.PlausibilityWarning
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        warnings.simplefilter("ignore", sw.PlausibilityWarning)
-        call(go)
+    assert {each.category for each in told} == {sw.PlausibilityWarning}
+    assert len([each for each in told if re.search(says, str(each.message))]) == 1
 
 
 def points(spacing: float = 0.25, scale: float = 1.0) -> tuple[np.ndarray, np.ndarray]:

@@ -26,6 +26,7 @@ GIVEN: dict[str, Any] = {
     "damping": 0.02,
     "road": sw.ISO8608("D"),
     "approach": 20.0,
+    "accuracy": 0.02,
 }
 
 #: All that Python has to know of a response that the core has learnt.

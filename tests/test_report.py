@@ -144,7 +144,7 @@ def test_traffic_roads_and_drives_are_computed_again(
     traffic: Any, settings: dict[str, Any]
 ) -> None:
     bridge = sw.Bridge(spans=[22.0], EI=2e9, mass=7e3, stations_per_span=5)
-    run = sw.cross(bridge, traffic, **{"speed": 20.0, "modes": 3, **settings})
+    run = sw.cross(bridge, traffic, **{"speed": 20.0, "modes": 3, "accuracy": 0.02, **settings})
     report = json.loads(json.dumps(run.to_dict()))
     same = again(report["settings"])
     assert_array_equal(same.moment, run.moment)

@@ -139,7 +139,8 @@ def given_by_modes() -> sw.Bridge:
 def test_the_settings_of_an_ensemble_are_a_case(
     bridge: sw.Bridge, given: dict[str, Any], several: bool
 ) -> None:
-    given = {"speed": 20.0, "modes": 2, "road": sw.ISO8608("B") + sw.Step(2.0, 0.002), **given}
+    road = sw.ISO8608("B") + sw.Step(2.0, 0.002)
+    given = {"speed": 20.0, "modes": 2, "road": road, "accuracy": 0.02, **given}
     if given.get("recovery") == "super":
         given["recovery"] = "superposition"
     if several:
