@@ -102,8 +102,8 @@ def complaint(axles: list[dict[str, float]], given: dict[str, Any]) -> str:
 
 
 def test_the_sections_of_a_bridge_of_many_stations_are_not_blamed() -> None:
-    fine = sw.Bridge(spans=[18.0, 18.0], EI=1.9e9, mass=6e3, stations_per_span=1000)
-    with pytest.raises(ValueError, match=r"^bridge = 2021 stations"):
+    fine = sw.Bridge(spans=[18.0] * 160, EI=1.9e9, mass=6e3, stations_per_span=4)
+    with pytest.raises(ValueError, match=r"^bridge = 2\d\d\d stations"):
         sw.cross(fine, TRUCK, modes=3, **GIVEN)
 
 

@@ -22,13 +22,13 @@ UNDISTURBED = 0.1
 #: Most time from the signal to its exception [s]: half a second, and more on slower machines.
 PATIENCE = 1.5
 
-#: A hundred wagons of four axles.
+#: Seventy wagons of four axles.
 TRAIN = """
 def axle(x):
     return sw.Axle(position=x, mass=1500.0, tyre_stiffness=1e9, suspension_stiffness=2e6)
 
 bodies = []
-for wagon in range(100):
+for wagon in range(70):
     k = len(bodies)
     ahead = [sw.Spring(to=k - 3, at=-13.0, own=13.0, stiffness=1e5)] if k else []
     bodies.append(sw.Body(mass=4e4, pitch_inertia=2e6, springs=ahead))
@@ -64,10 +64,10 @@ LONG = {
         "b.influence_line('moment', 100.0, [1.0, 2.0])",
     ),
     "a damping matrix": (
-        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1200)\n"
-        "b.modes(1000)",
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1000)\n"
+        "b.modes(800)",
         "sw.cross(b, TRUCK, speed=30.0, modes=2, step=0.01, beta=0.25,"
-        " damping=np.eye(1200) * (1.0 + np.random.rand()))",
+        " damping=np.eye(1000) * (1.0 + np.random.rand()))",
     ),
     "given flexibility": (
         "x = np.linspace(0.0, 20.0, 1502)[1:-1]\n"
@@ -89,8 +89,8 @@ LONG = {
     ),
     "static loads": (
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
-        "found = sw.ensemble(b, TRUCK, samples=60000, speed=20.0, damping=0.02,"
-        " factors={'body_mass': np.linspace(0.9, 1.1, 60000)}, quantities=['deflection'],"
+        "found = sw.ensemble(b, TRUCK, samples=30000, speed=20.0, damping=0.02,"
+        " factors={'body_mass': np.linspace(0.9, 1.1, 30000)}, quantities=['deflection'],"
         " modes=1, sections=[10.0], approach=0.0, tail=0.0, advance=5.0, beta=0.25)",
         "found._plan.static_loads()",
     ),
@@ -101,10 +101,10 @@ LONG = {
         " factors={'body_mass': np.linspace(0.9, 1.1, 8)})",
     ),
     "modes damped together": (
-        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1200)\n"
-        "b.modes(1000)",
-        "sw.cross(b, TRUCK, speed=30.0, modes=1000, step=0.01, beta=0.25, sections=[10.0],"
-        " damping=np.eye(1200) * (1.0 + np.random.rand()))",
+        "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3, stations_per_span=1000)\n"
+        "b.modes(800)",
+        "sw.cross(b, TRUCK, speed=30.0, modes=800, step=0.01, beta=0.25, sections=[10.0],"
+        " damping=np.eye(1000) * (1.0 + np.random.rand()))",
     ),
     "a large table": (
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"

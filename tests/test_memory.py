@@ -46,7 +46,7 @@ ASKED = [
     ("sw.cross(bridge, truck, **dict(given, modes=6, step=1.2e-6))", "InputError step = "),
     ("r = sw.cross(bridge, truck, step=4e-6, **given); r.moment; r.deflection; r.shear_left", None),
     (
-        "sw.ensemble(bridge, [truck] * 3000, samples=3000, kind=range(3000), advance=0.05, "
+        "sw.ensemble(bridge, [truck] * 1000, samples=1000, kind=range(1000), advance=0.05, "
         "**given)",
         "",
     ),

@@ -95,7 +95,9 @@ def test_deflections_and_accelerations(name: str) -> None:
         (largest, np.array(ACCELERATIONS[name])),
     ):
         assert (np.abs(ours - printed) <= 1e-3 * printed + DIGIT).all(), (ours, printed)
-    assert 1e3 * deflection.static_max.max() == pytest.approx(static(name, chords=False), rel=1e-6)
+    # Between two steps it is larger by up to 2e-6.
+    at_rest = 1e3 * deflection.static_max.max()
+    assert at_rest == pytest.approx(static(name, chords=False), rel=2e-6)
 
 
 @pytest.mark.parametrize("name", TRAINS)
