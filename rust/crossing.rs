@@ -6,6 +6,7 @@
 
 pub(crate) mod analysis;
 pub(crate) mod envelope;
+pub(crate) mod forces;
 pub(crate) mod history;
 pub(crate) mod observer;
 pub(crate) mod tail;
@@ -17,6 +18,7 @@ pub use history::{History, LiftOff};
 pub use observer::Observer;
 pub use tail::Watch;
 
+use crate::crossing::forces::Forces;
 use crate::crossing::time_loop::TimeLoop;
 use crate::error::Error;
 use crate::geometry::free::Free;
@@ -25,8 +27,10 @@ use crate::geometry::prescribed::Prescribed;
 use crate::modal_bridge::ModalBridge;
 use crate::passage::planned::Course;
 use crate::passage::settings::Settings;
-use crate::passage::step_length::Steps;
+use crate::passage::step_length::{Steps, are_driven};
 use crate::passage::{Direction, Passage};
+use crate::step::driving::{Drive, ModalForces};
+use crate::step::forced::Forced;
 use crate::stop_token::StopToken;
 use crate::vehicle::MAX_AXLES;
 
@@ -71,6 +75,17 @@ pub fn cross(
             None => course.axle(own, step as f64 * steps.h, length),
         }
     };
+    if let Some(rates) = model.damping.rates(&model.omega).filter(|_| are_driven(model, &courses)) {
+        let loads = courses.iter().flat_map(|course| course.vehicle.static_loads(settings.gravity)).collect();
+        let drive = |course: &Course<'_>| {
+            let way = steps.advance.unwrap_or(course.speed * steps.h);
+            (course.axles.clone(), Drive::new(&model.shapes, course.direction.sign() * way))
+        };
+        let drives = courses.iter().map(drive).collect();
+        let forced = Forced::new(&model.omega, &rates, steps.h);
+        let mut forces = Forces { ground, motion, loads, drives, forced, step: 0, driving: ModalForces::nothing() };
+        return TimeLoop::new(model, &courses, settings, &steps).run(&mut forces, watch, stop);
+    }
     // Whether forces follow rates, and with them the slopes of the modes.
     let rates = courses.iter().flat_map(|c| &c.vehicle.assembly().contacts).any(|contact| !contact.law.is_plain());
     if courses.iter().any(|course| course.rolls) {

@@ -30,6 +30,16 @@ pub enum ModalDamping {
     Coupled(Mat<f64>),
 }
 
+impl ModalDamping {
+    /// 2ζω of modes with these circular frequencies [1/s], if each is damped by itself.
+    pub fn rates(&self, omega: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            ModalDamping::Classical(ratios) => Some(omega.iter().zip(ratios).map(|(w, z)| 2.0 * z * w).collect()),
+            ModalDamping::Coupled(_) => None,
+        }
+    }
+}
+
 impl PartialEq for Damping {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {

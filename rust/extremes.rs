@@ -136,17 +136,19 @@ impl<L: Lane> Seen<L> {
     }
 }
 
-/// One response at a step.
+/// One response at a step: what the loads do is summed up by itself, so that it may be known beforehand.
 #[inline(always)]
 pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
     let mut value = L::splat(factors[0]) * row[0];
     for (factor, a) in factors[1..].iter().zip(&row[1..]) {
         value = value + L::splat(*factor) * *a;
     }
-    for (g, load) in influence.iter().zip(&row[factors.len()..]) {
-        value = value + L::splat(*g) * *load;
+    let mut of_loads = L::splat(0.0);
+    for (k, (g, load)) in influence.iter().zip(&row[factors.len()..]).enumerate() {
+        let own = L::splat(*g) * *load;
+        of_loads = if k == 0 { own } else { of_loads + own };
     }
-    value
+    if influence.is_empty() { value } else { value + of_loads }
 }
 
 /// What the rows multiply at a stop, from the steps before and after it, of which it is a mixture, but for what jumps.

@@ -135,6 +135,19 @@ impl ModeShapes {
         let width = self.mesh.width(panel);
         [value(cubic, fraction), slope(cubic, fraction) / width, curvature(cubic, fraction) / width.powi(2)]
     }
+
+    /// Value, slope and curvature at x, zero off the bridge.
+    pub fn rates_at(&self, x: f64, mode: usize) -> [f64; 3] {
+        let rates = |panel| self.rates(panel, self.mesh.fraction(panel, x), mode);
+        self.mesh.panel_at(x).map_or([0.0; 3], rates)
+    }
+
+    /// Value, slope, curvature and third derivative: all there is of a cubic.
+    pub fn derivatives(&self, panel: usize, fraction: f64, mode: usize) -> [f64; 4] {
+        let [value, slope, curvature] = self.rates(panel, fraction, mode);
+        let [.., c3] = self.cubics[panel * self.modes + mode];
+        [value, slope, curvature, 6.0 * c3 / self.mesh.width(panel).powi(3)]
+    }
 }
 
 /// Shortest of the spans between these bounds, ascending [m].

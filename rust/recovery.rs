@@ -335,13 +335,19 @@ impl BlockRows<'_> {
                 }
             }
         }
+        let mut of_loads = [[0.0; WIDTH]; STATES];
         for Placed { panel, fraction, loads } in axles {
             let [c0, c1, c2, c3] = &self.lines[panel * self.blocks];
             for i in 0..WIDTH {
                 let g = value([c0[i], c1[i], c2[i], c3[i]], *fraction);
-                for (values, load) in values.iter_mut().zip(loads) {
-                    values[i] += g * load;
+                for (of_loads, load) in of_loads.iter_mut().zip(loads) {
+                    of_loads[i] += g * load;
                 }
+            }
+        }
+        for (values, of_loads) in values.iter_mut().zip(of_loads) {
+            for i in 0..WIDTH {
+                values[i] += of_loads[i];
             }
         }
         values

@@ -43,6 +43,13 @@ impl<L: Lane> Ride<L> {
         }
     }
 
+    /// That of constant loads, with so many steps on the bridge.
+    pub fn steady(loads: &[L], counted: usize) -> Self {
+        let zero = L::splat(0.0);
+        let always = |&load: &L| Peaks { max: load, max_at: zero, min: load, min_at: zero };
+        Ride { loads: loads.iter().map(always).collect(), counted, ..Ride::nothing(loads.len(), 0) }
+    }
+
     /// Root mean square of an axle load about its static value, by that value, on the bridge, in one lane [-].
     pub fn load_coefficient(&self, axle: usize, lane: usize, static_load: f64) -> f64 {
         (self.deviations[axle].get(lane) / self.counted as f64).sqrt() / static_load

@@ -7,6 +7,7 @@
 
 use crate::recovery::{Place, Rows};
 use crate::selection::{Mark, Selection};
+use crate::tape::write_at_rest;
 
 /// Where axles are at the ends of steps.
 pub trait Positions {
@@ -136,6 +137,16 @@ impl PassingInfluence {
             rows.add_influences(look.rows[row].response, places, influence);
         }
         places.iter().for_each(|place| rows.extend_static(*place, statics));
+    }
+
+    /// The same of all axles as one, under these loads [N]; there are so many coordinates.
+    pub fn under(&self, loads: &[f64], coordinates: usize) -> Self {
+        let of_row = |row: &[f64]| row.iter().zip(loads).map(|(g, load)| g * load).reduce(|a, b| a + b);
+        let influence = self.influence.chunks_exact(loads.len()).map(|row| of_row(row).unwrap_or(0.0)).collect();
+        let mut statics = vec![0.0; coordinates + loads.len()];
+        write_at_rest(&self.statics, loads, &mut statics);
+        statics.truncate(coordinates);
+        PassingInfluence { influence, statics, places: Vec::new() }
     }
 }
 

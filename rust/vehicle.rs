@@ -120,6 +120,11 @@ impl Vehicle {
         }
     }
 
+    /// Whether it is a train of constant forces, which feel nothing of the bridge.
+    pub fn is_of_forces(&self) -> bool {
+        self.assembly.contacts.iter().all(|contact| contact.law == ContactLaw::Force)
+    }
+
     /// Total mass [kg], unsprung masses included; none of a train of forces.
     pub fn mass(&self) -> f64 {
         self.assembly.total_mass

@@ -323,6 +323,39 @@ fn several_vehicles_are_a_crossing_each() {
     }
 }
 
+/// Trains of forces, alike or each with loads, stiffness and damping of its own; on ends that are held and on free ones.
+#[test]
+fn trains_of_forces_are_a_crossing_each() {
+    let (axles, count) = (7, 37);
+    let loads: Vec<f64> = (0..axles).map(|k| 8e4 + 5e4 * spread(k)).collect();
+    let positions: Vec<f64> = (0..axles).map(|k| -2.7 * k as f64 - spread(k)).collect();
+    let train = Vehicle::force_train(&loads, &positions).unwrap();
+    let factors = |parameter: Parameter, width: usize| {
+        let values = (0..count * width).map(|i| 0.8 + 0.4 * spread(7 * i)).collect();
+        Factors { parameter, width, values }
+    };
+    let variants = [
+        vec![],
+        vec![factors(Parameter::BridgeStiffness, 1), factors(Parameter::BridgeDamping, 1)],
+        vec![factors(Parameter::BodyMass, 1)],
+        vec![factors(Parameter::BodyMass, axles), factors(Parameter::BridgeDamping, 1)],
+    ];
+    let bridges = all_arrangements().into_iter().step_by(5);
+    for (i, (name, bridge)) in bridges.enumerate() {
+        let tail = [Tail::Fixed(0.0), Tail::Free, Tail::Fixed(0.13)][i % 3];
+        let modes = bridge.stations().len().min(4);
+        let analysis = analysis_of(&bridge, modes, &Damping::Ratios(vec![0.02]), &[], RECOVERIES[i % RECOVERIES.len()]);
+        let approach = if i.is_multiple_of(2) { 0.0 } else { 3.0 };
+        let settings = Settings { approach, tail, ..Settings::at_speed(1.0) };
+        let kinds = vec![vec![Passage::of(train.clone())]];
+        let study = study_of(analysis, kinds, settings, None, Some(0.15), &ALL).unwrap();
+        let speeds = (0..count).map(|i| 12.0 + 70.0 * spread(i)).collect();
+        let samples = Samples { factors: variants[i % 4].clone(), speeds, ..Samples::at_speed(0, count, 1.0) };
+        check_ways(&study, &samples, &[0, 5, 36]);
+        check_alone(&study, &samples, &run(&study, &samples, Isa::chosen().unwrap(), 2), name);
+    }
+}
+
 /// The way per step that a single crossing at the speed of the study chooses [m].
 fn found_advance(study: &Study) -> f64 {
     let settings = Settings { road: Arc::new(synthesis().road(SEED, 4).into()), ..study.settings.clone() };

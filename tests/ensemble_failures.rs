@@ -230,8 +230,10 @@ fn studies_that_cannot_be() {
     assert!(message.contains("advance") && message.contains("length of the bridge"), "{message}");
     let message = refused(train(501, 0.1), 1.0, 0.5, 0.0);
     assert!(message.contains("501 axles"), "{message}");
-    // Two million steps of five hundred axles.
-    let message = refused(train(500, 0.1), 1.0, 5e-5, 0.0);
+    // Two million steps of five hundred axles; forces would be one.
+    let positions: Vec<f64> = (0..500).map(|k| -0.1 * f64::from(k)).collect();
+    let masses = Vehicle::moving_masses(&[1e3; 500], &positions).unwrap();
+    let message = refused(masses, 1.0, 5e-5, 0.0);
     assert!(message.contains("GB of memory"), "{message}");
     // The way before the entry counts: of 128 m the road has only what is left.
     let message = refused(kishan_vehicle(), 30.0, 0.0, 3.0);

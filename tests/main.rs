@@ -18,6 +18,7 @@ mod ensemble_statistics;
 mod envelope;
 mod flexibility;
 mod float_mode;
+mod forces;
 mod free_ends;
 mod friction;
 mod fryba;

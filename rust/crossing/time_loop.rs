@@ -29,8 +29,12 @@ const PAIRS: usize = 1 << 20;
 /// How the contacts come from one step to the next.
 pub trait Contacts: Geometry<f64> {
     /// The first state.
-    fn start(&self, rolling: &mut Rolling, starter: &mut Stepper<f64>, speeds: &[f64])
-    -> Result<State<f64>, Unsettled>;
+    fn start(
+        &mut self,
+        rolling: &mut Rolling,
+        starter: &mut Stepper<f64>,
+        speeds: &[f64],
+    ) -> Result<State<f64>, Unsettled>;
 
     /// One step.
     fn step(
@@ -40,12 +44,17 @@ pub trait Contacts: Geometry<f64> {
         state: &mut State<f64>,
     ) -> Result<(), Unsettled>;
 
+    /// The bridge by itself, as it goes on in such steps.
+    fn vibration(&self, stepper: &Stepper<f64>) -> Vibration<f64> {
+        stepper.vibration()
+    }
+
     /// Holds a contact where it is, its vehicle having come to rest.
     fn hold(&mut self, contact: usize);
 }
 
 impl<M: Fn(usize, usize) -> Coordinate<f64>> Contacts for Prescribed<'_, M> {
-    fn start(&self, _: &mut Rolling, starter: &mut Stepper<f64>, speeds: &[f64]) -> Result<State<f64>, Unsettled> {
+    fn start(&mut self, _: &mut Rolling, starter: &mut Stepper<f64>, speeds: &[f64]) -> Result<State<f64>, Unsettled> {
         starter.start(speeds, self)
     }
 
@@ -59,7 +68,7 @@ impl<M: Fn(usize, usize) -> Coordinate<f64>> Contacts for Prescribed<'_, M> {
 
 impl<M: Fn(usize, usize) -> Option<Coordinate<f64>>> Contacts for Free<'_, M> {
     fn start(
-        &self,
+        &mut self,
         rolling: &mut Rolling,
         starter: &mut Stepper<f64>,
         speeds: &[f64],
@@ -184,6 +193,7 @@ impl<'a> TimeLoop<'a> {
             Error::NoConvergence { what, step, time, position }
         };
         let speeds: Vec<f64> = self.courses.iter().map(|course| course.speed).collect();
+        self.vibration = geometry.vibration(&self.stepper);
         let started = geometry.start(&mut self.rolling, &mut self.starter, &speeds);
         let mut state = started.map_err(|e| unsettled(e, 0, 0.0, front(geometry)))?;
         for (travel, course) in state.travel.iter_mut().zip(self.courses) {

@@ -1,6 +1,6 @@
 //! Extremes without looking at every step.
 //!
-//! A response is a sum of products, Σ factor·coordinate + Σ influence·load. Rounding being monotone, the same sum with
+//! A response is a sum of products, (Σ factor·coordinate) + (Σ influence·load). Rounding being monotone, the same sum with
 //! every product at its largest over some steps is no less than any value the response takes there, to the last bit. So
 //! a glance at one step of every chunk finds values that the extremes must reach, and only those chunks are looked at
 //! whose bounds reach them, and of these only the parts whose bounds do, one step after the other.
@@ -131,13 +131,12 @@ fn bound<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positiv
         let [most, least] = between(*factor, *ends);
         (high, low) = (high + most, low + least);
     }
-    for (&[from, to], ends) in bounds.iter().zip(of_loads) {
+    // The loads by themselves first, as the values are summed up.
+    let mut sum = [L::splat(0.0); 2];
+    for (k, (&[from, to], ends)) in bounds.iter().zip(of_loads).enumerate() {
         let ([most, below], [above, least]) = (between(to, *ends), between(from, *ends));
-        if positive {
-            (high, low) = (high + most, low + least);
-        } else {
-            (high, low) = (high + most.larger(above), low + below.smaller(least));
-        }
+        let [most, least] = if positive { [most, least] } else { [most.larger(above), below.smaller(least)] };
+        sum = if k == 0 { [most, least] } else { [sum[0] + most, sum[1] + least] };
     }
-    [high, low]
+    if bounds.is_empty() { [high, low] } else { [high + sum[0], low + sum[1]] }
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::path::{Advance, passings};
 use super::results;
-use super::table::{Advance, passings};
 use crate::crossing::tail::end;
 use crate::extremes::Instant;
 use crate::passage::step_length::MAX_STEPS;

@@ -14,12 +14,14 @@ use crate::recovery::{Placed, Rows};
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
 use crate::statistics::Ride;
+use crate::step::driving::ModalForces;
+use crate::step::forced::Forced;
 use crate::step::gait::{COULOMB, DAMPERS, Gait, SPRINGS, Standing};
 use crate::step::stepper::{State, Stepper, Unsettled};
 use crate::step::swift::{Coupling, Swift};
 use crate::step::vibration::{Reach, Vibration};
 use crate::stop_token::StopToken;
-use crate::stops::PassingInfluence;
+use crate::stops::{PassingInfluence, Positions};
 use crate::tape::{BridgeFactors, CHUNK, Tape, Widths, write_at_rest};
 
 /// When the lanes of a group have done.
@@ -47,6 +49,40 @@ impl<L: Lane> Ends<L> {
     }
 }
 
+/// How a group comes from step to step.
+pub enum Engine<'e, 'a, L> {
+    /// Bridge and vehicles together, and where these are.
+    Coupled(&'e mut Steppers<L>, Tabulated<'a, L>),
+    /// The bridge alone, as constant loads [N] drive it.
+    Driven(&'e Forced<L>, &'e [L]),
+}
+
+impl<L: Lane> Engine<'_, '_, L> {
+    /// Static loads of all axles [N].
+    fn static_loads(&self) -> Vec<L> {
+        match self {
+            Engine::Coupled(steppers, _) => steppers.bridge.static_loads(),
+            Engine::Driven(_, loads) => loads.to_vec(),
+        }
+    }
+
+    /// The bridge by itself.
+    fn vibration(&self) -> Vibration<L> {
+        match self {
+            Engine::Coupled(steppers, _) => steppers.bridge.vibration(),
+            Engine::Driven(forced, _) => forced.vibration(),
+        }
+    }
+
+    /// The state at the start.
+    fn start(&mut self, table: &Table) -> Result<State<L>, Unsettled> {
+        match self {
+            Engine::Coupled(steppers, geometry) => steppers.starter.start(&[geometry.speed], geometry),
+            Engine::Driven(forced, loads) => Ok(State::of_loads(table.loads(), start_driven(table, forced, loads))),
+        }
+    }
+}
+
 /// The steppers of a group.
 #[derive(Debug, Clone)]
 pub struct Steppers<L> {
@@ -61,8 +97,6 @@ pub struct Steppers<L> {
 /// Samples side by side.
 #[derive(Debug, Clone)]
 pub struct Group<'a, L> {
-    /// Where they are.
-    pub geometry: Tabulated<'a, L>,
     /// Their bridges, if these differ.
     pub bridge: Option<BridgeFactors<L>>,
     /// When they end.
@@ -142,7 +176,10 @@ impl<L: Lane> Default for Scratch<L> {
 struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
+    /// Loads at rest, of the axles or of all together.
     static_loads: Vec<L>,
+    /// What all axles weigh.
+    weight: L,
     /// The bridge by itself.
     vibration: Vibration<L>,
 }
@@ -244,6 +281,7 @@ enum Where {
 struct Stepping<'s, 'g, 'a, L> {
     traveller: &'s mut Traveller<'g, 'a, L>,
     steppers: &'s mut Steppers<L>,
+    geometry: &'s mut Tabulated<'a, L>,
     scene: &'s Scene<'s>,
     tape: &'s mut Tape<L>,
     place: Where,
@@ -256,15 +294,14 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, scene, tape, place, steps, stop } = self;
+        let Stepping { traveller, steppers, geometry, scene, tape, place, steps, stop } = self;
         let widths = tape.widths;
         let stepper = if place == Where::Approach { &mut steppers.approach } else { &mut steppers.bridge };
         for step in steps.clone() {
-            if step > 0 {
-                let (state, geometry) = (&mut traveller.state, &mut traveller.group.geometry);
-                if let Err(e) = stepper.advance(state, geometry) {
-                    return Err(Trouble::Failed(step, Some(e)));
-                }
+            if step > 0
+                && let Err(e) = stepper.advance(&mut traveller.state, geometry)
+            {
+                return Err(Trouble::Failed(step, Some(e)));
             }
             let [before, row] = tape.row_mut(step);
             traveller.keep(row, &widths);
@@ -291,10 +328,10 @@ impl<L: Lane, const K: usize, const N: usize, const LAW: u8> Work for Striding<'
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Stepping { traveller, steppers, tape, place, steps, stop, .. } = self.0;
+        let Stepping { traveller, steppers, geometry, tape, place, steps, stop, .. } = self.0;
         let widths = tape.widths;
         let Traveller { group, state, static_loads, .. } = &mut *traveller;
-        let Group { geometry, bridge, bodies, .. } = &mut **group;
+        let Group { bridge, bodies, .. } = &mut **group;
         let (approach, static_loads) = (place == Where::Approach, &static_loads[..K]);
         let stepper = if approach { &steppers.approach } else { &steppers.bridge };
         let mut swift = Swift::<L, K, N, LAW>::new(stepper, state, geometry.speed);
@@ -331,7 +368,7 @@ impl<L: Lanes> Stepping<'_, '_, '_, L> {
     fn go(self) -> Result<(), Trouble> {
         let approach = self.place == Where::Approach;
         let stepper = if approach { &self.steppers.approach } else { &self.steppers.bridge };
-        let known = approach || self.traveller.group.geometry.interaction_at(self.steps.start).is_some();
+        let known = approach || self.geometry.interaction_at(self.steps.start).is_some();
         let gait = stepper.gait().filter(|_| known && !self.scene.closely);
         // Debug builds know none: they change no bit and take most of the time to compile.
         macro_rules! gaits {
@@ -359,6 +396,46 @@ impl<L: Lanes> Stepping<'_, '_, '_, L> {
             (Dampers DAMPERS 3 6),
             (Dampers DAMPERS 5 8)
         )
+    }
+}
+
+/// The same under constant loads, which nothing couples to the bridge.
+struct Driving<'s, 'g, 'a, L> {
+    traveller: &'s mut Traveller<'g, 'a, L>,
+    forced: &'s Forced<L>,
+    loads: &'s [L],
+    table: &'s Table,
+    tape: &'s mut Tape<L>,
+    place: Where,
+    steps: Range<usize>,
+}
+
+impl<L: Lane> Work for Driving<'_, '_, '_, L> {
+    type Output = Result<(), Trouble>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Driving { traveller, forced, loads, table, tape, place, steps } = self;
+        let widths = tape.widths;
+        let mut forces = ModalForces::nothing();
+        for step in steps.clone() {
+            let modes = &mut traveller.state.modes;
+            match (&table.resultant, &table.drive) {
+                _ if step == 0 || place == Where::Approach => {}
+                (Some(resultant), _) => forced.advance(modes, &resultant.driving[step], L::splat),
+                (None, Some(drive)) => {
+                    drive.at(step, |step, axle| table.path.x(step, axle), loads, &mut forces);
+                    forced.advance(modes, &forces, |force| force);
+                }
+                (None, None) => {}
+            }
+            let [before, row] = tape.row_mut(step);
+            traveller.keep(row, &widths);
+            if place == Where::Tail {
+                traveller.end(step, [before, row]);
+            }
+        }
+        if traveller.sound(steps.end - 1) { Ok(()) } else { Err(Trouble::Failed(steps.end - 1, None)) }
     }
 }
 
@@ -414,8 +491,7 @@ impl<L: Lane> Work for Deciding<'_, '_, '_, L> {
         let Deciding { traveller, found, scene, step } = self;
         let reach = traveller.reach();
         if traveller.group.ends.free {
-            let load = traveller.static_loads.iter().fold(L::splat(0.0), |sum, load| sum + *load);
-            let settled = scene.free.settled(&reach, load, |row| found.seen.reached(row));
+            let settled = scene.free.settled(&reach, traveller.weight, |row| found.seen.reached(row));
             let ending = traveller.group.ends.end(settled, step);
             if let Some(own) = &mut found.reach {
                 own.select(ending, &reach);
@@ -500,7 +576,7 @@ fn look_at_steps<L: Lanes>(
     // which it would make long.
     macro_rules! sizes {
         ($($c:literal $a:literal),*) => {
-            match (rows.width(), if loaded { table.axles() } else { 0 }) {
+            match (rows.width(), if loaded { table.loads() } else { 0 }) {
                 $(($c, $a) if !cfg!(debug_assertions) => {
                     L::dispatch(Searching::<L, $c, $a> { peaks, factors: &look.factors, tape, chunks, glanced })
                 })*
@@ -512,17 +588,17 @@ fn look_at_steps<L: Lanes>(
 }
 
 /// Marches a group of samples through the table.
-pub fn cross_group<L: Lanes>(
+pub fn cross_group<'a, L: Lanes>(
     scene: &Scene<'_>,
-    group: &mut Group<'_, L>,
-    steppers: &mut Steppers<L>,
+    group: &mut Group<'a, L>,
+    engine: &mut Engine<'_, 'a, L>,
     scratch: &mut Scratch<L>,
     stop: StopToken<'_>,
 ) -> Result<Found<L>, Trouble> {
     let Scene { table, rows, look, .. } = *scene;
     let steps = table.path.steps;
     let bodies = group.bodies.len();
-    let widths = Widths::of(rows, table.axles(), bodies);
+    let widths = Widths::of(rows, table.loads(), bodies);
     let longest = longest(&widths);
     let Scratch { tape, glanced, between, influence, chunks: own_chunks } = scratch;
     let mut found = Found {
@@ -531,11 +607,14 @@ pub fn cross_group<L: Lanes>(
         ride: Ride::nothing(table.axles(), bodies),
         reach: None,
     };
-    let speed = group.geometry.speed;
-    let state = steppers.starter.start(&[speed], &group.geometry).map_err(|e| Trouble::Failed(0, Some(e)))?;
-    let static_loads = steppers.bridge.static_loads();
-    let vibration = steppers.bridge.vibration();
-    let mut traveller = Traveller { group, state, static_loads, vibration };
+    let of_axles = engine.static_loads();
+    let state = engine.start(table).map_err(|e| Trouble::Failed(0, Some(e)))?;
+    let weight = of_axles.iter().fold(L::splat(0.0), |sum, load| sum + *load);
+    let static_loads = if table.resultant.is_some() { vec![L::splat(1.0)] } else { of_axles.clone() };
+    // Constant loads have no ride to speak of.
+    let riding = if table.drive.is_some() { &[][..] } else { &of_axles };
+    let vibration = engine.vibration();
+    let mut traveller = Traveller { group, state, static_loads, weight, vibration };
     tape.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
     traveller.keep(tape.row_mut(0)[0], &widths);
@@ -557,13 +636,19 @@ pub fn cross_group<L: Lanes>(
         if tape.steps == 0 {
             tape.begin(widths, from, most.min((end - from).div_ceil(CHUNK)));
         }
-        let steppers = &mut *steppers;
         let with_vehicle = from..to.min(table.last() + 1);
         let alone = with_vehicle.end.max(from);
         if !with_vehicle.is_empty() {
-            let stepping =
-                Stepping { traveller: &mut traveller, steppers, scene, tape, place, steps: with_vehicle, stop };
-            stepping.go()?;
+            let (traveller, steps) = (&mut traveller, with_vehicle);
+            match engine {
+                Engine::Coupled(steppers, geometry) => {
+                    Stepping { traveller, steppers, geometry, scene, tape, place, steps, stop }.go()?;
+                }
+                Engine::Driven(forced, loads) => {
+                    L::dispatch(Driving { traveller, forced, loads, table, tape, place, steps })?;
+                    stop.check().map_err(|_| Trouble::Interrupted)?;
+                }
+            }
         }
         if place == Where::Tail {
             let reach = &mut found.reach;
@@ -573,7 +658,7 @@ pub fn cross_group<L: Lanes>(
         let taking_in = TakingIn {
             found: &mut found,
             scene,
-            static_loads: &traveller.static_loads,
+            static_loads: riding,
             ends: &traveller.group.ends,
             place,
             steps: from..to,
@@ -596,7 +681,23 @@ pub fn cross_group<L: Lanes>(
         }
         from = to;
     }
+    if table.drive.is_some() {
+        found.ride = Ride::steady(&of_axles, found.ride.counted);
+    }
     Ok(found)
+}
+
+/// The modes at the start, under constant loads where some stand on the bridge then.
+fn start_driven<L: Lane>(table: &Table, forced: &Forced<L>, loads: &[L]) -> Vec<Coordinate<L>> {
+    match (&table.resultant, &table.drive) {
+        (Some(resultant), _) if table.first == 0 => forced.start(&resultant.driving[0], L::splat),
+        (None, Some(drive)) if table.first == 0 => {
+            let mut forces = ModalForces::nothing();
+            drive.at(0, |step, axle| table.path.x(step, axle), loads, &mut forces);
+            forced.start(&forces, |force| force)
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// How far free vibration can exceed what has been seen, being looked at; not a number where it is not known.
@@ -643,7 +744,7 @@ impl<L: Lane, F: Fn(usize) -> u64> Work for Drawing<'_, L, F> {
 /// The static extremes under loads that differ from sample to sample.
 pub fn rest<L: Lanes>(scene: &Scene<'_>, loads: &[L]) -> Seen<L> {
     let Scene { table, rows, look, .. } = *scene;
-    let widths = Widths { felt: true, ..Widths::of(rows, table.axles(), 0) };
+    let widths = Widths { felt: true, ..Widths::of(rows, table.loads(), 0) };
     let mut seen = Seen::beginning(look.rows.len(), table.first > 0);
     let (mut own_chunks, mut glanced, mut tape) = (Vec::new(), Vec::new(), Tape::new());
     let longest = longest(&widths);

@@ -10,6 +10,7 @@ use super::workers::Workers;
 use crate::error::Error;
 use crate::memory;
 use crate::recovery::Place;
+use crate::step::driving::Drive;
 use crate::stops::Stop;
 use crate::tape::{CHUNK, PARTS};
 
@@ -23,6 +24,8 @@ pub struct Room<'a> {
     /// For each of them [bytes].
     each: f64,
     alike: bool,
+    /// Whether samples have static loads of their own.
+    own_loads: bool,
 }
 
 impl<'a> Room<'a> {
@@ -40,6 +43,7 @@ impl<'a> Room<'a> {
             side_by_side: workers.isa.samples(),
             each: f64::INFINITY,
             alike: samples.alike(),
+            own_loads: samples.varies_loads(),
         };
         // Of every march its pace stays, and its static extremes, while they are being joined twice.
         let stays = |&(kind, _): &March| {
@@ -85,22 +89,34 @@ impl<'a> Room<'a> {
         let path = study.path((kind, halvings));
         let steps = (path.steps + path.beyond + 1) as f64;
         let kinds = if contacts.iter().all(|contact| contact.law.is_plain()) { 1 } else { 3 };
+        let (driven, together) = (study.is_driven(kind), laid_out && self.is_together(kind));
         let shapes = size_of::<f64>() * study.analysis.model.omega.len() * kinds;
-        let geometry = steps * axles * (size_of::<Below>() + size_of::<Place>() + shapes) as f64;
+        let felt = if driven { 0 } else { size_of::<Below>() + shapes };
+        let place = if together { 0 } else { size_of::<Place>() };
+        let [of_step, of_load] = Drive::bytes(&study.analysis.model.shapes);
+        let driving = if together { steps * of_step + axles * of_load } else { 0.0 };
+        let geometry = steps * axles * (felt + place) as f64 + driving;
         let (width, rows) = (study.analysis.rows.width() as f64, study.look.rows.len() as f64);
+        let (sides, marks) = (2.0 * axles, study.look.marks.len() as f64);
+        // On the bridge, all together are one.
+        let axles = if together { 1.0 } else { axles };
         let mut numbers = rows * axles + width * axles;
         if laid_out {
             let asked: usize = study.look.marks.iter().map(|mark| study.look.asked[mark.asked].len()).sum();
-            let stops = 2.0 * axles * study.look.marks.len() as f64;
-            numbers += steps * axles * width + stops * axles * width + 2.0 * axles * axles * asked as f64;
+            numbers += axles * (steps * width + sides * (marks * width + asked as f64));
             // Of the influence on each row, its middle, and its bounds over all steps of a chunk and over each part.
             let influence = rows * axles * (CHUNK + 1 + 2 + 2 * PARTS) as f64;
             let ready = rows * axles * steps <= READY as f64;
             let chunks = if ready { steps / CHUNK as f64 + 1.0 } else { 1.0 + (KEPT / CHUNK) as f64 / (width + axles) };
             numbers += influence * chunks;
-            numbers += if self.alike { MOST_INTERACTIONS as f64 } else { 0.0 };
+            numbers += if self.alike && !driven { MOST_INTERACTIONS as f64 } else { 0.0 };
         }
         self.of_worker() + geometry + self.of_stops(kind) + size_of::<f64>() as f64 * numbers
+    }
+
+    /// Whether the loads of a kind are laid out as one.
+    fn is_together(&self, kind: usize) -> bool {
+        self.study.is_driven(kind) && !self.own_loads
     }
 
     /// Bytes of the stops of a kind.

@@ -14,6 +14,7 @@ use super::shelf::{FEW, Shelf};
 use super::side_by_side::{Part, Task};
 use super::single;
 use super::study::{March, Study};
+use super::table::Layout;
 use super::varied::vehicles;
 use super::workers::{BLOCK, Progress, Workers};
 use crate::error::Error;
@@ -73,7 +74,9 @@ impl Study {
         let share = count.div_ceil(4 * working).next_multiple_of(side_by_side).max(side_by_side);
         let chunk = workers.chunk.unwrap_or(share.min(BLOCK));
         let shelf = |(&march, members): (&March, &Vec<u32>)| {
-            Shelf::new(march, members.len() > FEW && room.lays_out(march), members.len().div_ceil(chunk))
+            let many = members.len() > FEW && room.lays_out(march);
+            let layout = if many { self.layout(march.0, samples) } else { Layout::Bare };
+            Shelf::new(march, layout, members.len().div_ceil(chunk))
         };
         let shelves: Vec<Shelf> = distinct.iter().filter(|_| self.shares).map(shelf).collect();
         let lost_rows = lost.len();
@@ -87,7 +90,7 @@ impl Study {
             let (stop, mut failed) = (StopToken::when(&stopped), Vec::new());
             if let Some(shelf) = shelves.get(march) {
                 stop.check()?;
-                let shared = shelf.take(self, &format);
+                let shared = shelf.take(self, &format, stop)?;
                 let task = Task { study: self, format, samples, kind: marches[march].0, shared: &shared };
                 let (records, failed) = (&mut records[..], &mut failed);
                 let part = Part { task, members, records, failed, stop };

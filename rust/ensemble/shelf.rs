@@ -10,7 +10,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::results::Format;
 use super::side_by_side;
 use super::study::{March, Study};
+use super::table::Layout;
 use super::tabulated::Shared;
+use crate::error::Error;
+use crate::stop_token::StopToken;
 
 /// To march so many samples one after the other is less work than to lay out the geometry for all.
 pub const FEW: usize = 2;
@@ -19,7 +22,7 @@ pub const FEW: usize = 2;
 #[derive(Debug)]
 pub struct Shelf {
     march: March,
-    laid_out: bool,
+    layout: Layout,
     shared: Mutex<Option<Arc<Shared>>>,
     /// Portions of its samples that are not done.
     left: AtomicUsize,
@@ -28,23 +31,23 @@ pub struct Shelf {
 }
 
 impl Shelf {
-    /// Of a march that this many portions of samples take, its geometry laid out or not.
-    pub fn new(march: March, laid_out: bool, portions: usize) -> Self {
+    /// Of a march that this many portions of samples take.
+    pub fn new(march: March, layout: Layout, portions: usize) -> Self {
         let left = AtomicUsize::new(portions);
-        Shelf { march, laid_out, shared: Mutex::new(None), left, stays: OnceLock::new() }
+        Shelf { march, layout, shared: Mutex::new(None), left, stays: OnceLock::new() }
     }
 
     /// What its samples share, made now if nobody has.
-    pub fn take(&self, study: &Study, format: &Format) -> Arc<Shared> {
+    pub fn take(&self, study: &Study, format: &Format, stop: StopToken<'_>) -> Result<Arc<Shared>, Error> {
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(shared) = &*shared {
-            return Arc::clone(shared);
+            return Ok(Arc::clone(shared));
         }
-        let table = study.table(self.march, self.laid_out);
+        let table = study.table(self.march, self.layout.clone(), stop)?;
         if !format.own_statics {
             self.stays.get_or_init(|| side_by_side::at_rest(study, self.march.0, &table));
         }
-        Arc::clone(shared.insert(Arc::new(Shared::new(table))))
+        Ok(Arc::clone(shared.insert(Arc::new(Shared::new(table)))))
     }
 
     /// One portion is done.

@@ -1,6 +1,8 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
-use super::group::{Drawing, Ends, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest};
+use super::group::{
+    Drawing, Ends, Engine, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest,
+};
 use super::results::{Column, Failure, Format, Record, encoded};
 use super::sample::Samples;
 use super::study::{Kind, Study};
@@ -15,18 +17,21 @@ use crate::lane::dispatch::InLanes;
 use crate::lane::{Lane, Lanes};
 use crate::passage::settings::{Settings, Tail};
 use crate::passage::step_length::{bytes, room};
+use crate::step::forced::Forced;
 use crate::step::stepper::{Scheme, Stepper, Unsettled};
 use crate::step::unit::{Moving, Propulsion};
 use crate::step::vibration::most_steps;
 use crate::stop_token::StopToken;
 use crate::stops::Positions;
 use crate::tape::BridgeFactors;
+use crate::vehicle::Vehicle;
 
 /// The static extremes of a kind as it is, in the steps of a table: the largest of the responses looked at, then the
 /// smallest.
 pub fn at_rest(study: &Study, kind: usize, table: &Table) -> Vec<f64> {
     let scene = Scene { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely: false };
-    let loads = study.vehicle(kind).static_loads(study.settings.gravity);
+    let of_axles = study.vehicle(kind).static_loads(study.settings.gravity);
+    let loads = if table.resultant.is_some() { vec![1.0] } else { of_axles };
     let seen = &rest::<f64>(&scene, &loads);
     let row_of = &study.look.row_of;
     let side =
@@ -83,13 +88,60 @@ struct Crossed<L> {
     last: L,
 }
 
+/// How one sample comes from step to step.
+enum Moves {
+    /// Bridge and vehicle together: how it starts, on the approach, on the bridge.
+    Coupled(Box<[Stepper<f64>; 3]>),
+    /// The bridge alone, by circular frequency [rad/s] and rate of damping [1/s] of each mode, in steps of a time [s].
+    Driven { modes: Vec<[f64; 2]>, h: f64 },
+}
+
+impl Moves {
+    /// Those of the samples in the lanes, which have the same ways.
+    fn gather<'a, L: Lane>(each: impl Fn(usize) -> &'a Ready) -> Gathered<L> {
+        match &each(0).moves {
+            Moves::Coupled(_) => {
+                let stepper = |which: usize| {
+                    let of = |lane: usize| match &each(lane).moves {
+                        Moves::Coupled(steppers) => Some(&steppers[which]),
+                        Moves::Driven { .. } => None,
+                    };
+                    Stepper::<L>::gather(&(0..L::SAMPLES).filter_map(of).collect::<Vec<_>>())
+                };
+                Gathered::Coupled(Box::new(Steppers { starter: stepper(0), approach: stepper(1), bridge: stepper(2) }))
+            }
+            Moves::Driven { modes, .. } => {
+                let of_mode = |m: usize, which: usize| {
+                    L::from_fn(|lane| match &each(lane).moves {
+                        Moves::Driven { modes, .. } => modes[m][which],
+                        Moves::Coupled(_) => f64::NAN,
+                    })
+                };
+                let h = L::from_fn(|lane| match &each(lane).moves {
+                    Moves::Driven { h, .. } => *h,
+                    Moves::Coupled(_) => f64::NAN,
+                });
+                let [omega, rates]: [Vec<L>; 2] =
+                    [0, 1].map(|which| (0..modes.len()).map(|m| of_mode(m, which)).collect());
+                let forced = Forced::new(&omega, &rates, h);
+                let load = |k: usize| L::from_fn(|lane| each(lane).static_loads[k]);
+                Gathered::Driven(forced, (0..each(0).static_loads.len()).map(load).collect())
+            }
+        }
+    }
+}
+
+/// The same of the samples in the lanes.
+enum Gathered<L> {
+    Coupled(Box<Steppers<L>>),
+    Driven(Forced<L>, Vec<L>),
+}
+
 /// One sample made ready.
 struct Ready {
     /// See [`Stepper::ways`].
     ways: Vec<bool>,
-    starter: Stepper<f64>,
-    approach: Stepper<f64>,
-    stepper: Stepper<f64>,
+    moves: Moves,
     bridge: Option<BridgeFactors<f64>>,
     /// ω² of its slowest mode.
     slowest: f64,
@@ -125,7 +177,26 @@ impl Task<'_> {
         let vehicle = &passages[0].vehicle;
         let model = &self.study.analysis.model;
         let varied = VariedBridge::of(model, self.samples, sample);
-        let there = varied.as_ref().map_or((&model.omega[..], &model.damping), |v| (&v.omega, &v.damping));
+        let there = varied.as_ref().map_or((&model.omega[..], &model.damping), |v| (&v.omega[..], &v.damping));
+        let h = self.step(sample);
+        let slowest = there.0.iter().fold(f64::INFINITY, |least, w| w.powi(2).min(least));
+        let moves = match there.1.rates(there.0).filter(|_| self.shared.table.drive.is_some()) {
+            Some(rates) => {
+                let modes = there.0.iter().zip(rates).map(|(&omega, rate)| [omega, rate]).collect();
+                Moves::Driven { modes, h }
+            }
+            None => self.coupled(vehicle, there, h),
+        };
+        let ways = match &moves {
+            Moves::Coupled(steppers) => steppers.iter().flat_map(Stepper::ways).collect(),
+            Moves::Driven { .. } => Vec::new(),
+        };
+        let static_loads = vehicle.static_loads(self.study.settings.gravity);
+        Ok(Ready { slowest, ways, moves, static_loads, bridge: varied.as_ref().map(|varied| varied.factors) })
+    }
+
+    /// Bridge and vehicle together, in steps of h [s].
+    fn coupled(&self, vehicle: &Vehicle, there: (&[f64], &ModalDamping), h: f64) -> Moves {
         let (assembly, propulsion) = (vehicle.assembly(), Propulsion::Prescribed);
         let moving = [Moving { assembly, propulsion, direction: 1.0, grade: 0.0 }];
         let Settings { beta, gravity, lift_off, .. } = self.study.settings;
@@ -133,20 +204,8 @@ impl Task<'_> {
             Stepper::new(omega, damping, &moving, &Scheme { h, beta, gravity, lift_off })
         };
         let none = (&[][..], &ModalDamping::Classical(Vec::new()));
-        let h = self.step(sample);
-        let (starter, approach) =
-            (stepper(if self.shared.table.first > 0 { none } else { there }, 0.0), stepper(none, h));
-        let stepper = stepper(there, h);
-        let slowest = there.0.iter().fold(f64::INFINITY, |least, w| w.powi(2).min(least));
-        Ok(Ready {
-            slowest,
-            ways: [&starter, &approach, &stepper].into_iter().flat_map(Stepper::ways).collect(),
-            starter,
-            approach,
-            stepper,
-            static_loads: vehicle.static_loads(gravity),
-            bridge: varied.as_ref().map(|varied| varied.factors),
-        })
+        let starter = stepper(if self.shared.table.first > 0 { none } else { there }, 0.0);
+        Moves::Coupled(Box::new([starter, stepper(none, h), stepper(there, h)]))
     }
 
     /// Runs some samples, one group of lanes after the other; those that fail are marked.
@@ -161,14 +220,14 @@ impl Task<'_> {
         let alike = self.samples.alike();
         // One for all samples, or else for those of a group.
         let mut ready: Vec<Ready> = Vec::new();
-        let mut steppers: Option<Steppers<L>> = None;
+        let mut engine: Option<Gathered<L>> = None;
         let groups = members.chunks(L::SAMPLES).zip(records.chunks_mut(L::SAMPLES));
         for (members, records) in groups {
             // Places in the group of those that are marched.
             let mut places: Vec<usize> = (0..members.len()).collect();
             if !alike || ready.is_empty() {
                 let (made, sound) = self.ready_all(members, records, failed);
-                (ready, places, steppers) = (made, sound, None);
+                (ready, places, engine) = (made, sound, None);
             }
             // Side by side go those whose steps take the same ways, as nearly always all do.
             let mut first = 0;
@@ -180,13 +239,13 @@ impl Task<'_> {
                 let (places, ready) = (&places[first..last], if alike { &ready[..] } else { &ready[first..last] });
                 first = last;
                 if !alike {
-                    steppers = None;
+                    engine = None;
                 }
                 // First all side by side; then each that has failed, or all where it is not known which, in all lanes
                 // alone, to see when. Others come to the same as side by side.
                 let own_scratch = (&mut scratch, &mut roads);
                 let mut again: Vec<usize> = (0..places.len()).collect();
-                match self.group(members, places, ready, false, &mut steppers, own_scratch, stop) {
+                match self.group(members, places, ready, false, &mut engine, own_scratch, stop) {
                     Ok(group) => again.retain(|&lane| {
                         let place = places[lane];
                         !self.write(&group, lane, ready, members[place], &mut records[place])
@@ -246,7 +305,7 @@ impl Task<'_> {
         places: &[usize],
         ready: &[Ready],
         closely: bool,
-        steppers: &mut Option<Steppers<L>>,
+        engine: &mut Option<Gathered<L>>,
         (scratch, roads): (&mut Scratch<L>, &mut Vec<L>),
         stop: StopToken<'_>,
     ) -> Result<Crossed<L>, Trouble> {
@@ -256,16 +315,8 @@ impl Task<'_> {
         let scene = Scene { table, rows: &study.analysis.rows, look: &study.look, free: &study.free, closely };
         let sample_of = |lane: usize| members[places[lane.min(places.len() - 1)]] as usize;
         let ready_of = |lane: usize| &ready[lane.min(ready.len() - 1)];
-        let gather = |of: fn(&Ready) -> &Stepper<f64>| {
-            let each: Vec<&Stepper<f64>> = (0..L::SAMPLES).map(|lane| of(ready_of(lane))).collect();
-            Stepper::<L>::gather(&each)
-        };
-        let steppers = steppers.get_or_insert_with(|| Steppers {
-            starter: gather(|r| &r.starter),
-            approach: gather(|r| &r.approach),
-            bridge: gather(|r| &r.stepper),
-        });
-        if let Some((synthesis, seed)) = &study.own {
+        let engine = engine.get_or_insert_with(|| Moves::gather(ready_of));
+        if let Some((synthesis, seed)) = study.own.as_ref().filter(|_| table.drive.is_none()) {
             let sample = |lane: usize| samples.first + sample_of(lane) as u64;
             L::dispatch(Drawing { synthesis, seed: *seed, sample, road: roads });
         }
@@ -287,17 +338,25 @@ impl Task<'_> {
             BridgeFactors { coordinates: of(|b| b.coordinates), rates: of(|b| b.rates) }
         });
         let speed = L::from_fn(|lane| samples.speed(sample_of(lane), 0));
-        let interactions = (samples.alike() && table.laid_out).then(|| {
-            let work = || Interactions::new(table, &mut ready_of(0).stepper.clone(), speed.get(0));
-            interactions.get_or_init(work)
-        });
-        let geometry = Tabulated::new(table, roads, speed, interactions);
-        let mut group = Group { geometry, bridge, ends, bodies: &kind.bodies };
-        let found = cross_group(&scene, &mut group, steppers, scratch, stop)?;
+        // Constant loads feel neither road nor bridge.
+        let mut engine = match engine {
+            Gathered::Driven(forced, loads) => Engine::Driven(forced, loads),
+            Gathered::Coupled(steppers) => {
+                let interactions = (samples.alike() && table.laid_out).then(|| {
+                    interactions.get_or_init(|| match &ready_of(0).moves {
+                        Moves::Coupled(own) => Interactions::new(table, &mut own[2].clone(), speed.get(0)),
+                        Moves::Driven { .. } => Interactions::default(),
+                    })
+                });
+                Engine::Coupled(steppers, Tabulated::new(table, roads, speed, interactions))
+            }
+        };
+        let mut group = Group { bridge, ends, bodies: &kind.bodies };
+        let found = cross_group(&scene, &mut group, &mut engine, scratch, stop)?;
         let at_rest = self.format.own_statics.then(|| {
             let of = |k: usize| L::from_fn(|lane| ready_of(lane).static_loads[k]);
-            let loads: Vec<L> = (0..table.axles()).map(of).collect();
-            rest(&scene, &loads)
+            let loads = (0..table.axles()).map(of).collect();
+            rest(&scene, &if table.resultant.is_some() { vec![L::splat(1.0)] } else { loads })
         });
         let growth = L::dispatch(Growing { free: &study.free, found: &found });
         Ok(Crossed { found, at_rest, growth, last: group.ends.last })

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::path::Advance;
 use super::results::{Failure, Format};
 use super::sample::{Parameter, Samples};
-use super::table::{Advance, StudyRoad, Table};
+use super::table::{Feeling, Layout, StudyRoad, Table};
 use crate::crossing::analysis::Analysis;
 use crate::crossing::tail::FreeRows;
 use crate::error::{Error, positive};
@@ -244,8 +245,22 @@ impl Study {
         Advance { start: -self.settings.approach, advance, behind, steps, beyond }
     }
 
-    /// The geometry of a kind whose step is halved so many times, laid out for many samples or not.
-    pub fn table(&self, march: March, laid_out: bool) -> Table {
+    /// Whether a kind is of constant loads on a bridge whose modes they drive each by itself: no step couples them.
+    pub fn is_driven(&self, kind: usize) -> bool {
+        let model = &self.analysis.model;
+        self.vehicle(kind).is_of_forces() && model.damping.rates(&model.omega).is_some()
+    }
+
+    /// What is laid out for many samples of a kind.
+    pub fn layout(&self, kind: usize, samples: &Samples) -> Layout {
+        match self.is_driven(kind) && !samples.varies_loads() {
+            true => Layout::Together(self.vehicle(kind).static_loads(self.settings.gravity)),
+            false => Layout::Each,
+        }
+    }
+
+    /// The geometry of a kind whose step is halved so many times.
+    pub fn table(&self, march: March, layout: Layout, stop: StopToken<'_>) -> Result<Table, Error> {
         let Analysis { model, rows, .. } = &*self.analysis;
         let (vehicle, length) = (self.vehicle(march.0), model.shapes.mesh().length());
         let pavement = Pavement {
@@ -255,9 +270,13 @@ impl Study {
             ramp: self.settings.ramp,
             direction: 1.0,
         };
+        if self.is_driven(march.0) {
+            return Table::new(self.path(march), &model.shapes, (rows, &self.look), Feeling::Nothing, layout, stop);
+        }
         let slopes = !vehicle.assembly().contacts.iter().all(|contact| contact.law.is_plain());
         let ground = StudyRoad { pavement: &pavement, own: self.own.as_ref().map(|(own, _)| &**own) };
-        Table::new(self.path(march), &model.shapes, (rows, &self.look), slopes, ground, laid_out)
+        let feeling = Feeling::Below(ground, slopes);
+        Table::new(self.path(march), &model.shapes, (rows, &self.look), feeling, layout, stop)
     }
 
     /// How often the step of each sample must be halved: a function of the sample alone. Samples that would take too many
@@ -293,11 +312,11 @@ impl Study {
             let [bridge, own, on_bridge] = fastest[kind];
             let stiffness = extreme(Parameter::BridgeStiffness, 1, f64::max);
             let fastest = (bridge * stiffness + own * springs / inertia + on_bridge * tyres).sqrt();
-            let limit = if beta < 0.25 { 1.0 / (fastest * (0.25 - beta).sqrt()) } else { f64::INFINITY };
+            let [resolved, limit] = fineness.step(fastest, beta, self.is_driven(kind));
             let longest = match (self.settings.step, self.advance) {
                 (Some(step), _) => step.min(limit),
                 (None, Some(_)) => limit,
-                (None, None) => fineness.step(fastest).min(limit),
+                (None, None) => resolved.min(limit),
             };
             let speed = samples.speed(sample, 0);
             let (steps, way) = plans[kind];
@@ -306,7 +325,7 @@ impl Study {
             let tail = self.settings.tail.seconds().unwrap_or(0.0);
             let count = (steps as f64) * times + tail * speed / way;
             if halvings > MOST_HALVINGS || count > MAX_STEPS as f64 {
-                let usual = way > fineness.step(fastest).min(limit) * speed;
+                let usual = way > resolved.min(limit) * speed;
                 let (key, value) = match self.settings.step {
                     _ if steps as f64 * times < 0.5 * count => ("tail".to_string(), format!("{tail} s")),
                     Some(step) if !usual => ("step".to_string(), format!("{step} s")),

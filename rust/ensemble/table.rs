@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
-use serde::{Deserialize, Serialize};
-
+use super::path::{Advance, passings};
+use super::resultant::Resultant;
+use crate::error::Error;
 use crate::extremes::Instant;
 use crate::geometry::Surface;
 use crate::geometry::pavement::{Pavement, Share};
@@ -13,7 +14,9 @@ use crate::recovery::{Place, Rows};
 use crate::road::b_spline::Taps;
 use crate::road::random::Synthesis;
 use crate::selection::Selection;
-use crate::stops::{Passing, PassingInfluence, Positions, Stop, short_of};
+use crate::step::driving::Drive;
+use crate::stop_token::StopToken;
+use crate::stops::{PassingInfluence, Positions, Stop};
 use crate::tape::{CHUNK, PART, PARTS};
 
 /// The step of a chunk of so many that is looked at first.
@@ -53,32 +56,6 @@ pub enum Below {
     },
 }
 
-/// How axles move in equal steps of space.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Advance {
-    /// Front axle at the start [m].
-    pub start: f64,
-    /// Way per step [m].
-    pub advance: f64,
-    /// Distance of each axle behind the first [m].
-    pub behind: Vec<f64>,
-    /// Number of steps until the last axle has left.
-    pub steps: usize,
-    /// Steps beyond these in which the vehicle is followed, if there is a tail.
-    pub beyond: usize,
-}
-
-impl Positions for Advance {
-    fn axles(&self) -> usize {
-        self.behind.len()
-    }
-
-    #[inline(always)]
-    fn x(&self, step: usize, axle: usize) -> f64 {
-        self.advance * step as f64 + self.start - self.behind[axle]
-    }
-}
-
 /// The shared geometry.
 #[derive(Debug, Clone)]
 pub struct Table {
@@ -98,6 +75,10 @@ pub struct Table {
     pub first: usize,
     /// Stops between steps, in order.
     pub stops: Vec<Stop>,
+    /// How constant loads drive the modes, where the axles are that.
+    pub drive: Option<Drive>,
+    /// All of them as one, if the same for all samples.
+    pub resultant: Option<Resultant>,
     /// Whether what the axles do to the bridge is laid out for many samples.
     pub laid_out: bool,
     /// If so, what static loads of one at the axles make of the coordinates, by step, axle and coordinate.
@@ -131,69 +112,117 @@ impl StudyRoad<'_> {
     }
 }
 
+/// What is laid out beforehand of what the axles do to the bridge.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Layout {
+    /// Nothing: it is worked out as it is asked for.
+    Bare,
+    /// That of each axle, for many samples.
+    Each,
+    /// That of constant loads [N] together, the same for many samples.
+    Together(Vec<f64>),
+}
+
+/// What moves over the bridge.
+#[derive(Debug, Clone, Copy)]
+pub enum Feeling<'a> {
+    /// Constant loads, which feel nothing.
+    Nothing,
+    /// Axles that feel the road and the bridge, with its slopes or without.
+    Below(StudyRoad<'a>, bool),
+}
+
 impl Table {
-    /// For axles on their `path` over a bridge of which `look` is looked at; with `slopes` of the modes if the step asks
-    /// for them, and with what axles do to the bridge `laid_out` if many samples share it.
+    /// For axles on their `path` over a bridge of which `look` is looked at.
     pub fn new(
         path: Advance,
         shapes: &ModeShapes,
         (rows, look): (&Rows, &Selection),
-        slopes: bool,
-        ground: StudyRoad<'_>,
-        laid_out: bool,
-    ) -> Self {
-        let (kinds, axles, steps) = (if slopes { 3 } else { 1 }, path.behind.len(), path.steps);
+        feeling: Feeling<'_>,
+        layout: Layout,
+        stop: StopToken<'_>,
+    ) -> Result<Self, Error> {
+        let (axles, steps) = (path.behind.len(), path.steps);
+        let constant = matches!(feeling, Feeling::Nothing);
+        let drive = constant.then(|| Drive::new(shapes, path.advance));
+        let laid_out = layout != Layout::Bare;
+        let resultant = match (&drive, layout) {
+            (Some(drive), Layout::Together(loads)) => Some(Resultant::new(loads, &path, drive, stop)?),
+            _ => None,
+        };
+        let together = resultant.is_some();
+        let (kept, felt) = (if together { 0 } else { axles }, if constant { 0 } else { axles });
+        let kinds = if matches!(feeling, Feeling::Below(_, true)) { 3 } else { 1 };
         let mut table = Table {
             modes: shapes.modes(),
-            places: Vec::with_capacity((steps + 1) * axles),
-            below: Vec::with_capacity((steps + path.beyond + 1) * axles),
-            shapes: Vec::with_capacity((steps + path.beyond + 1) * axles * shapes.modes() * kinds),
+            places: Vec::with_capacity((steps + path.beyond + 1) * kept),
+            below: Vec::with_capacity((steps + path.beyond + 1) * felt),
+            shapes: Vec::with_capacity((steps + path.beyond + 1) * felt * shapes.modes() * kinds),
             kinds,
             first: steps,
             stops: Vec::new(),
+            drive,
+            resultant,
             laid_out,
             statics: Vec::new(),
             passing_influences: Vec::new(),
             ready: None,
             path,
         };
+        let mut places = vec![None; axles];
         for step in 0..=steps + table.path.beyond {
-            for axle in 0..axles {
+            for (axle, place) in places.iter_mut().enumerate() {
                 let x = table.path.x(step, axle);
-                let place = rows.place(x);
-                table.below.push(ground.below(x));
-                shapes.extend_at(x, kinds, &mut table.shapes);
-                table.places.push(place);
-                if laid_out && step <= steps {
-                    rows.extend_static(place, &mut table.statics);
+                *place = rows.place(x);
+                if let Feeling::Below(ground, _) = feeling {
+                    table.below.push(ground.below(x));
+                    shapes.extend_at(x, kinds, &mut table.shapes);
                 }
                 if place.is_some() {
                     table.first = table.first.min(step);
                 }
             }
+            match &table.resultant {
+                Some(resultant) if step <= steps => resultant.extend_static(&places, rows, &mut table.statics),
+                Some(_) => {}
+                None => {
+                    table.places.extend_from_slice(&places);
+                    if laid_out && step <= steps {
+                        places.iter().for_each(|place| rows.extend_static(*place, &mut table.statics));
+                    }
+                }
+            }
+            stop.check()?;
         }
         let marks: Vec<f64> = look.marks.iter().map(|mark| mark.x).collect();
         table.stops = passings(&table.path, &marks).iter().flat_map(|passing| passing.stops(look, true)).collect();
         if !laid_out {
-            return table;
+            return Ok(table);
         }
-        let influence = |stop: &Stop| {
-            let mut influence = PassingInfluence::default();
-            influence.fill(stop, &table.path, rows, look);
-            influence
-        };
-        table.passing_influences = table.stops.iter().map(influence).collect();
-        let all = look.rows.len() * axles * (steps + 1 - table.first);
+        let mut each = PassingInfluence::default();
+        for place in &mut table.stops {
+            each.fill(place, &table.path, rows, look);
+            table.passing_influences.push(match &table.resultant {
+                None => each.clone(),
+                Some(resultant) => {
+                    *place = resultant.stop(place.clone());
+                    resultant.passing(&each, rows.width())
+                }
+            });
+            stop.check()?;
+        }
+        let all = look.rows.len() * table.loads() * (steps + 1 - table.first);
         if all <= READY {
-            let chunks = (table.first..=steps).step_by(CHUNK);
-            let filled = chunks.map(|from| {
+            let mut ready = Vec::with_capacity((steps + 1 - table.first).div_ceil(CHUNK));
+            for from in (table.first..=steps).step_by(CHUNK) {
                 let mut chunk = Chunk::default();
                 table.fill(from, rows, look, &mut chunk);
-                chunk
-            });
-            table.ready = Some(filled.collect());
+                ready.push(chunk);
+                stop.check()?;
+            }
+            table.ready = Some(ready);
         }
-        table
+        Ok(table)
     }
 
     /// When an instant is, in steps of h [s].
@@ -207,6 +236,11 @@ impl Table {
     /// Number of axles.
     pub fn axles(&self) -> usize {
         self.path.behind.len()
+    }
+
+    /// Number of loads on the bridge: of axles, or one of all together.
+    pub fn loads(&self) -> usize {
+        if self.resultant.is_some() { 1 } else { self.axles() }
     }
 
     /// The last step that the table knows; beyond it there is the bridge alone.
@@ -236,28 +270,32 @@ impl Table {
     }
 
     fn fill(&self, from: usize, rows: &Rows, look: &Selection, chunk: &mut Chunk) {
-        let axles = self.axles();
+        let loads = self.loads();
         let to = (from + CHUNK).min(self.path.steps + 1);
-        let places = &self.places[from * axles..to * axles];
         let count = to - from;
-        chunk.influence.clear();
         chunk.middles.clear();
         chunk.bounds.clear();
         chunk.parts.clear();
-        for row in &look.rows {
-            let start = chunk.influence.len();
-            let influence = |place: &Place| place.map_or(0.0, |place| rows.influence_of(row.response, place));
-            chunk.influence.extend(places.iter().map(influence));
-            let own = &chunk.influence[start..];
-            let bounds = |axle: usize, steps: Range<usize>| {
-                let numbers = steps.map(|step| own[step * axles + axle]);
+        match &self.resultant {
+            Some(resultant) => resultant.influence(&self.path, from..to, rows, look, &mut chunk.influence),
+            None => {
+                chunk.influence.clear();
+                for row in &look.rows {
+                    let influence = |place: &Place| place.map_or(0.0, |place| rows.influence_of(row.response, place));
+                    chunk.influence.extend(self.places(from..to).iter().map(influence));
+                }
+            }
+        }
+        for own in chunk.influence.chunks_exact(count * loads) {
+            let bounds = |load: usize, steps: Range<usize>| {
+                let numbers = steps.map(|step| own[step * loads + load]);
                 numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], g| [low.min(g), high.max(g)])
             };
-            chunk.middles.extend_from_slice(&own[middle(count) * axles..][..axles]);
-            chunk.bounds.extend((0..axles).map(|axle| bounds(axle, 0..count)));
+            chunk.middles.extend_from_slice(&own[middle(count) * loads..][..loads]);
+            chunk.bounds.extend((0..loads).map(|load| bounds(load, 0..count)));
             for part in 0..PARTS {
                 let steps = (part * PART).min(count)..((part + 1) * PART).min(count);
-                chunk.parts.extend((0..axles).map(|axle| bounds(axle, steps.clone())));
+                chunk.parts.extend((0..loads).map(|load| bounds(load, steps.clone())));
             }
         }
     }
@@ -270,7 +308,7 @@ impl Table {
 
     /// What static loads of one at the axles make of the coordinates at a step, by axle and coordinate.
     pub fn statics<'a>(&'a self, step: usize, rows: &Rows, scratch: &'a mut Vec<f64>) -> &'a [f64] {
-        let width = self.axles() * rows.width();
+        let width = self.loads() * rows.width();
         if self.laid_out {
             return &self.statics[step * width..(step + 1) * width];
         }
@@ -293,27 +331,4 @@ impl Table {
         scratch.fill(&self.stops[stop], &self.path, rows, look);
         scratch
     }
-}
-
-/// Every passing of some marks [m], in order.
-pub fn passings(path: &Advance, marks: &[f64]) -> Vec<Passing> {
-    // Where rounding leaves the last axle just short of the end, it passes that in the first step of the tail.
-    let last = path.steps + usize::from(path.beyond > 0);
-    let mut passings = Vec::with_capacity(path.behind.len() * marks.len());
-    for axle in 0..path.behind.len() {
-        for (mark, &at) in marks.iter().enumerate() {
-            // The first step at whose end the axle is not before the mark; where it starts it does not pass.
-            let (mut step, mut end, near) = (0, last + 1, at - short_of(path, axle, at));
-            while step < end {
-                let middle = step + (end - step) / 2;
-                if path.x(middle, axle) < near { step = middle + 1 } else { end = middle }
-            }
-            if step == 0 || step > last {
-                continue;
-            }
-            passings.push(Passing::new(path, step, axle, (mark, at)));
-        }
-    }
-    passings.sort_unstable_by_key(|passing| (passing.step, passing.axle, passing.mark));
-    passings
 }

@@ -90,9 +90,8 @@ impl Steps {
     pub fn plan(model: &ModalBridge, courses: &[Course<'_>], settings: &Settings) -> Result<Self, Error> {
         let length = model.shapes.mesh().length();
         let fastest = model.fastest_frequency(courses.iter().map(|course| course.vehicle));
-        let limit = if settings.beta < 0.25 { 1.0 / (fastest * (0.25 - settings.beta).sqrt()) } else { f64::INFINITY };
         let fineness = Fineness::of(settings);
-        let resolved = fineness.step(fastest);
+        let [resolved, limit] = fineness.step(fastest, settings.beta, are_driven(model, courses));
         let speed = courses.iter().map(|course| course.motion.fastest()).fold(0.0, f64::max);
         let speed = if speed.is_finite() { speed } else { fastest_on_the_way(courses, length) };
         let way = |course: &Course<'_>| {
@@ -235,9 +234,14 @@ impl Fineness {
         Fineness { accuracy, scale: (accuracy / (1.0 + beside)).sqrt() }
     }
 
-    /// Longest step that resolves vibrations up to this circular frequency [rad/s] [s].
-    pub fn step(&self, fastest: f64) -> f64 {
-        self.scale * PHASE / fastest
+    /// Longest step that resolves vibrations up to this circular frequency [rad/s] [s], and the longest that is stable; if
+    /// the modes are `driven`, Newmark's method has no part in it.
+    pub fn step(&self, fastest: f64, beta: f64, driven: bool) -> [f64; 2] {
+        match driven {
+            true => [self.accuracy.sqrt() * PHASE / fastest, f64::INFINITY],
+            false if beta < 0.25 => [self.scale * PHASE / fastest, 1.0 / (fastest * (0.25 - beta).sqrt())],
+            false => [self.scale * PHASE / fastest, f64::INFINITY],
+        }
     }
 
     /// Longest way per step [m] of a vehicle over these spans on a road. Forces do not feel it, and masses that roll on it
@@ -246,7 +250,7 @@ impl Fineness {
         let laws = || vehicle.contacts.iter().map(|contact| contact.law);
         let mut way = shortest_span / STEPS_PER_SPAN;
         if laws().all(|law| law == ContactLaw::Force) {
-            return self.scale * way;
+            return self.accuracy.sqrt() * way;
         }
         if road.slope_power > 0.0 {
             way = way.min((ROUGH * (SLOPE / road.slope_power.sqrt()).sqrt()).max(ROUGHEST));
@@ -259,6 +263,12 @@ impl Fineness {
         }
         self.scale * way.min(road.finest / STEPS_PER_EDGE)
     }
+}
+
+/// Whether all are constant loads at constant speed on a bridge whose modes they drive each by itself: no step couples them.
+pub fn are_driven(model: &ModalBridge, courses: &[Course<'_>]) -> bool {
+    let constant = |course: &Course<'_>| course.vehicle.is_of_forces() && course.motion.is_steady() && !course.rolls;
+    courses.iter().all(constant) && model.damping.rates(&model.omega).is_some()
 }
 
 /// Highest speed before the last axle has left, where speeds grow for ever [m/s].

@@ -47,6 +47,21 @@ pub struct State<L> {
     pub along: Vec<L>,
 }
 
+impl<L: Lane> State<L> {
+    /// Of so many constant loads, which have nothing to move but the bridge, and of its modes.
+    pub fn of_loads(count: usize, modes: Vec<Coordinate<L>>) -> Self {
+        let zero = L::splat(0.0);
+        State {
+            modes,
+            coordinates: Vec::new(),
+            travel: Vec::new(),
+            increments: vec![zero; count],
+            strokes: vec![Stroke::at_rest(zero); count],
+            along: vec![zero; count],
+        }
+    }
+}
+
 /// Settings that all vehicles share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scheme {

@@ -15,11 +15,14 @@
 //! −Σ i(ẍ + dẋ) = Σ iω²x. A full D hands energy from mode to mode: E is then that of all together, R at most √E times
 //! the length of its coefficients of ωz and ẋ/√g (Cauchy and Schwarz), and what is not in proportion to D of the damping
 //! forces in the rows from rates, q·ẋ, adds at most √E |q| √g.
+//!
+//! Modes that are followed exactly have k = 0: E is the energy itself.
 
 use serde::{Deserialize, Serialize};
 
 use super::bridge_step::ModalSolve;
 use super::newmark::Newmark;
+use super::oscillator::Oscillator;
 use crate::coordinate::Coordinate;
 use crate::lane::Lane;
 
@@ -43,8 +46,11 @@ fn root<L: Lane>(value: L) -> L {
 /// The bridge by itself, without loads.
 #[derive(Debug, Clone)]
 pub struct Vibration<L> {
-    newmark: Newmark<L>,
-    modal: ModalSolve<L>,
+    swing: Swing<L>,
+    /// k.
+    lag: L,
+    /// Whether no energy goes from mode to mode.
+    apart: bool,
     /// ω² of each mode.
     stiffness: Vec<L>,
     /// 1 − kω² of each mode.
@@ -53,9 +59,21 @@ pub struct Vibration<L> {
     most: Vec<L>,
     /// Largest |ẋ| of any mode by √E.
     fastest: L,
-    predicted: Vec<Coordinate<L>>,
-    forces: Vec<L>,
-    accelerations: Vec<L>,
+}
+
+/// How the modes come from one step to the next.
+#[derive(Debug, Clone)]
+enum Swing<L> {
+    /// By Newmark's method, with room to work in.
+    Newmark {
+        newmark: Newmark<L>,
+        modal: ModalSolve<L>,
+        predicted: Vec<Coordinate<L>>,
+        forces: Vec<L>,
+        accelerations: Vec<L>,
+    },
+    /// Exactly.
+    Exact(Vec<Oscillator<L>>),
 }
 
 impl<L: Lane> Vibration<L> {
@@ -76,29 +94,57 @@ impl<L: Lane> Vibration<L> {
         Vibration {
             most: most.collect(),
             fastest: root(fastest),
-            predicted: vec![Coordinate::rest(); modes],
-            forces: vec![zero; modes],
-            accelerations: vec![zero; modes],
-            newmark,
-            modal,
+            lag: k,
+            apart: modal.apart,
             stiffness,
             mass,
+            swing: Swing::Newmark {
+                predicted: vec![Coordinate::rest(); modes],
+                forces: vec![zero; modes],
+                accelerations: vec![zero; modes],
+                newmark,
+                modal,
+            },
+        }
+    }
+
+    /// Of modes each of which is followed exactly.
+    pub fn exact(modes: Vec<Oscillator<L>>) -> Self {
+        let one = L::splat(1.0);
+        let stiffness: Vec<L> = modes.iter().map(Oscillator::omega2).collect();
+        Vibration {
+            lag: L::splat(0.0),
+            apart: true,
+            mass: vec![one; modes.len()],
+            most: stiffness.iter().map(|w2| root(one / *w2)).collect(),
+            fastest: one,
+            stiffness,
+            swing: Swing::Exact(modes),
         }
     }
 
     /// Advances the modes by one step, as [`crate::step`] does where no contact is on the bridge, to the bit.
     #[inline(always)]
     pub fn swing(&mut self, modes: &mut [Coordinate<L>]) {
-        for (predicted, mode) in self.predicted.iter_mut().zip(modes.iter()) {
-            *predicted = self.newmark.predict(*mode);
-        }
-        self.modal.resist(self.modal.classical, &self.predicted, &mut self.forces);
-        for force in &mut self.forces {
-            *force = -*force;
-        }
-        self.modal.apply(self.modal.classical, &self.forces, &mut self.accelerations);
-        for ((mode, predicted), a) in modes.iter_mut().zip(&self.predicted).zip(&self.accelerations) {
-            *mode = self.newmark.correct(*predicted, *a);
+        match &mut self.swing {
+            Swing::Newmark { newmark, modal, predicted, forces, accelerations } => {
+                for (predicted, mode) in predicted.iter_mut().zip(modes.iter()) {
+                    *predicted = newmark.predict(*mode);
+                }
+                modal.resist(modal.classical, predicted, forces);
+                for force in forces.iter_mut() {
+                    *force = -*force;
+                }
+                modal.apply(modal.classical, forces, accelerations);
+                for ((mode, predicted), a) in modes.iter_mut().zip(predicted).zip(accelerations) {
+                    *mode = newmark.correct(*predicted, *a);
+                }
+            }
+            Swing::Exact(own) => {
+                for (mode, own) in modes.iter_mut().zip(own) {
+                    *mode = own.accelerated(own.swing(*mode), L::splat(0.0));
+                }
+            }
         }
     }
 
@@ -108,16 +154,15 @@ impl<L: Lane> Vibration<L> {
     pub fn reach(&mut self, modes: &[Coordinate<L>]) -> Reach<L> {
         let mut next = modes.to_vec();
         self.swing(&mut next);
-        let k = L::splat(0.25) * self.newmark.h * self.newmark.h - self.newmark.new;
         let energy = |m: usize, c: &Coordinate<L>| {
-            let z = c.x + k * c.a;
+            let z = c.x + self.lag * c.a;
             self.mass[m] * c.v * c.v + self.stiffness[m] * z * z
         };
         let both = modes.iter().zip(&next).enumerate().map(|(m, (now, next))| [energy(m, now), energy(m, next)]);
         let zero = L::splat(0.0);
         let [now, next] = both.clone().fold([zero; 2], |[a, b], [now, next]| [a + now, b + next]);
         let all = root(now.larger(next));
-        let (most, apart) = (&self.most, self.modal.apart);
+        let (most, apart) = (&self.most, self.apart);
         let each = both.zip(most).map(|([now, next], most)| {
             let own = if apart { root(now.larger(next)) } else { all };
             own * *most

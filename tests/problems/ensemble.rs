@@ -9,7 +9,7 @@ use spanwise::bridge::Bridge;
 use spanwise::crossing::{Analysis, Envelope, History, Observer, Preparation, axle_loads, cross};
 use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::{
-    Column, Factors, Parameter, Plan, Progress, Record, Results, Run, Samples, Shared, Study, Task, Workers,
+    Column, Factors, Layout, Parameter, Plan, Progress, Record, Results, Run, Samples, Shared, Study, Task, Workers,
 };
 use spanwise::error::Error;
 use spanwise::lane::{Isa, Lanes};
@@ -331,7 +331,8 @@ pub fn check_alone(study: &Study, samples: &Samples, run: &Run, name: &str) {
 /// One sample in a lane of any kind, its geometry laid out or not, on the calling thread: its numbers and instants.
 pub fn one<L: Lanes>(study: &Study, number: u64, laid_out: bool) -> (Vec<f64>, Vec<u32>) {
     let samples = Samples::at_speed(number, 1, SPEED);
-    let (format, table) = (study.format(&samples), study.table((0, 0), laid_out));
+    let layout = if laid_out { study.layout(0, &samples) } else { Layout::Bare };
+    let (format, table) = (study.format(&samples), study.table((0, 0), layout, StopToken::NEVER).unwrap());
     let (mut numbers, mut instants) = (vec![0.0; format.width()], vec![0; format.instants()]);
     let record = Record { numbers: &mut numbers, instants: &mut instants };
     let (samples, shared) = (&samples, &Shared::new(table));
