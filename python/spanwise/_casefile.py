@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 import stat
-from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from spanwise.errors import InputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 #: Largest case file that is read [bytes].
 MAX_BYTES: Final = 2**20

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence, Sized
 from collections.abc import Set as AbstractSet
 from itertools import islice
 from numbers import Integral, Real
-from pathlib import Path
-from typing import Any, Final, TypeAlias, TypeGuard, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeGuard, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,9 @@ from spanwise._keys import alike, suggestion
 from spanwise._shown import LONGEST
 from spanwise._shown import shown as shown
 from spanwise.errors import InputError, refused
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 Name = TypeVar("Name")
 
@@ -171,6 +173,8 @@ def mapping(key: str, value: object, what: str = "a mapping") -> Mapping[Any, An
 
 def file_path(key: str, value: object) -> Path:
     """Where a file or a folder is."""
+    from pathlib import Path  # which takes as long to import as all of this package's roads
+
     if not isinstance(value, str | os.PathLike):
         raise TypeError(f"{key} = {shown(value)}: must be a path")
     try:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from difflib import SequenceMatcher
 from functools import wraps
 from typing import Any, Final, TypeVar, cast
 
@@ -95,4 +94,6 @@ def _likeness(given: tuple[str, ...], known: tuple[str, ...]) -> float:
 
 
 def _ratio(known: str, given: str) -> float:
+    from difflib import SequenceMatcher  # seldom needed
+
     return SequenceMatcher(None, known, given).ratio()

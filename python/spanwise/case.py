@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from spanwise._build import Place, Table, within
 from spanwise._case_tables import (
@@ -40,6 +38,9 @@ from spanwise.schema import (
 from spanwise.study import ensemble
 from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 __all__ = ["Case", "CaseError"]
 
@@ -175,6 +176,7 @@ class Case(Hashed):
             source, tables = _read(path, settings)
             case = cls._of(tables, source, path.parent)
         except CaseError as error:
+            from spanwise._toml import toml_value
             from spanwise.roads.sniffing import looks_like_profile
 
             if looks_like_profile(path):
@@ -182,7 +184,7 @@ class Case(Hashed):
                     path,
                     None,
                     "is a measured profile, not a case; in a case it is the road:\n"
-                    f'[road]\nkind = "profile"\nfile = {json.dumps(path.as_posix())}',
+                    f'[road]\nkind = "profile"\nfile = {toml_value(path.as_posix())}',
                 ) from error
             raise
         return replace(case, files=(path, *case.files))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from numbers import Integral
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
@@ -29,6 +28,8 @@ from spanwise.runs import Run
 from spanwise.samples import BodyAccelerations, Failure, SampleContactLoss
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
 
     from spanwise.plotting import EnsemblePlot

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -30,6 +29,8 @@ from spanwise.traffic import Passage
 from spanwise.vehicles import AnyVehicle
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
 
     from spanwise.plotting import RunPlot

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from spanwise._build import Maker, Place, build_one, check_known, keys_of
-from spanwise._checks import choice, numbers
+from spanwise._checks import choice, file_path, numbers
 from spanwise._toml import table_of
 from spanwise.bridge import Bridge
 from spanwise.damping import Rayleigh, damping_of
@@ -21,6 +20,9 @@ from spanwise.traffic import Braking, Passage, drive_of, is_alone
 from spanwise.trains import ForceTrain, MovingMasses
 from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
 from spanwise.vehicles import PRESETS, AnyVehicle
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 BRIDGE: Final = Maker(Bridge)
 #: Tables in ``[bridge]`` of a bridge that is given from outside.
@@ -79,7 +81,7 @@ class Reading:
     """How the tables of a case are read, and the files that they name."""
 
     #: Where these are looked for.
-    folder: Path = Path()
+    folder: str | Path = ""
     #: Says where a key belongs that is not allowed where it is.
     home: Callable[[str], str] = belongs
     #: Those that have been read.
@@ -100,7 +102,7 @@ class Reading:
     def _found(self, value: Any) -> Any:
         """The table with the path of its file if it names one."""
         if isinstance(value, Mapping) and isinstance(value.get("file"), str):
-            self.files.append(self.folder / value["file"])
+            self.files.append(file_path("folder", self.folder) / value["file"])
             return {**value, "file": str(self.files[-1])}
         return value
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, TypeAlias
+from os import PathLike
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,9 @@ from spanwise.errors import InputError, refused
 from spanwise.roads._doubts import doubts
 from spanwise.roads.base import CONTACT_PATCH, Road
 from spanwise.roads.roughness import HELD
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -126,7 +129,7 @@ class Profile(Road):
     @suggesting
     def read(
         cls,
-        path: str | Path,
+        path: str | PathLike[str],
         *,
         columns: Sequence[int | str] | int | str | None = None,
         spacing: float | None = None,
@@ -225,7 +228,7 @@ class Profile(Road):
             raise _in_file(error, path, x, elevations, lines) from None
 
     @classmethod
-    def read_csv(cls, path: str | Path, **options: Any) -> Profile:
+    def read_csv(cls, path: str | PathLike[str], **options: Any) -> Profile:
         """The name that `read` had when it read tables only."""
         renamed("Profile.read_csv", "Profile.read")
         return cls.read(path, **options)
