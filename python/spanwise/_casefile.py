@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import stat
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from spanwise.errors import InputError
@@ -11,8 +12,9 @@ from spanwise.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: Largest case file that is read [bytes].
+#: Largest case file that is read, and largest file of results [bytes].
 MAX_BYTES: Final = 2**20
+MAX_RESULTS: Final = 2**26
 
 #: Most parts of a dotted key: the reader's time and memory grow with their square.
 MAX_PARTS: Final = 16
@@ -39,14 +41,13 @@ def read_text(path: Path) -> str:
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
         raise CaseError(path, None, f"is {kind}; a case is a TOML file")
-    if status.st_size > MAX_BYTES:
-        raise CaseError(
-            path, None, f"has {status.st_size} bytes; a case file has at most {MAX_BYTES}"
-        )
+    most = MAX_RESULTS if path.suffix.lower() == ".json" else MAX_BYTES
+    if status.st_size > most:
+        raise CaseError(path, None, f"has {status.st_size} bytes; a case file has at most {most}")
     with path.open("rb") as file:
-        content = file.read(MAX_BYTES + 1)
-    if len(content) > MAX_BYTES:  # it has grown since, or did not tell its size
-        raise CaseError(path, None, f"is too large; a case file has at most {MAX_BYTES} bytes")
+        content = file.read(most + 1)
+    if len(content) > most:  # it has grown since, or did not tell its size
+        raise CaseError(path, None, f"is too large; a case file has at most {most} bytes")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -54,6 +55,30 @@ def read_text(path: Path) -> str:
         raise CaseError(
             f"{path}, line {line}", None, "is not UTF-8 text; a case is a TOML file"
         ) from error
+
+
+def tables_of(text: str, source: str) -> dict[str, Any]:
+    """The tables of a case in TOML, or in the JSON of results, whose settings they are."""
+    if not text.lstrip().startswith("{"):
+        return {**settings_of(parse_toml(text, source))}
+    import json
+
+    try:
+        return {**settings_of(json.loads(text))}
+    except (ValueError, RecursionError) as error:
+        said = "brackets within brackets too deep" if isinstance(error, RecursionError) else error
+        raise CaseError(source, None, f"is not valid JSON: {said}") from error
+
+
+def settings_of(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The tables of a case, or those in all that is told of results, the road in its own place."""
+    if {"version", "settings"} <= tables.keys() and isinstance(tables["settings"], Mapping):
+        tables = tables["settings"]
+    many = tables.get("ensemble")
+    if not isinstance(many, Mapping) or "road" not in many or "road" in tables:
+        return tables
+    rest = {key: value for key, value in many.items() if key != "road"}
+    return {**tables, "ensemble": rest, "road": many["road"]}
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from spanwise._keys import alike, suggestion
 from spanwise._shown import LONGEST
 from spanwise._shown import shown as shown
-from spanwise.errors import InputError, refused
+from spanwise.errors import InputError, refused, wrong_kind
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -176,7 +176,7 @@ def file_path(key: str, value: object) -> Path:
     from pathlib import Path  # which takes as long to import as all of this package's roads
 
     if not isinstance(value, str | os.PathLike):
-        raise TypeError(f"{key} = {shown(value)}: must be a path")
+        raise wrong_kind(key, value, "must be a path")
     try:
         path = Path(value)
         if b"\0" in os.fsencode(path):

@@ -17,7 +17,7 @@ from spanwise._rows import Rows
 from spanwise._value import same
 from spanwise._variation import Factors
 from spanwise.ensembles import Ensemble
-from spanwise.errors import InputError
+from spanwise.errors import InputError, wrong_kind
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -54,11 +54,11 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
     >>> whole = sw.concat(map(sw.Ensemble.read, folder.glob("part*.npz")))  # doctest: +SKIP
     """
     if not is_list(ensembles):
-        raise TypeError(f"ensembles = {shown(ensembles)}: must be a list of Ensemble")
+        raise wrong_kind("ensembles", ensembles, "must be a list of Ensemble")
     given = items("ensembles", ensembles, "a list of Ensemble")
     for i, each in enumerate(given):
         if not isinstance(each, Ensemble):
-            raise TypeError(f"ensembles[{i}] = {shown(each)}: must be an Ensemble")
+            raise wrong_kind(f"ensembles[{i}]", each, "must be an Ensemble")
     if not given:
         raise InputError("ensembles", "[]", "must be one or more")
     order = sorted(range(len(given)), key=lambda i: given[i].first)

@@ -9,11 +9,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import array, as_array, refuse_where, shown
+from spanwise._checks import array, as_array, refuse_where
 from spanwise._value import Value
 from spanwise._wheels import Wheels
 from spanwise.crossing import made_by, passages_of
-from spanwise.errors import InputError, refused
+from spanwise.errors import InputError, KindError, refused, wrong_kind
 from spanwise.roads import ISO8608, Road
 from spanwise.roads.base import total
 from spanwise.roads.random import is_random
@@ -33,27 +33,29 @@ def events_of(vehicle: object) -> tuple[Event, ...]:
     if isinstance(vehicle, Wheels | Passage):
         return (passages_of(vehicle),)
     if not isinstance(vehicle, list | tuple) or not vehicle:
-        raise TypeError(
-            f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage, a list of Passage "
-            "for one event, or a list of vehicles or of lists of Passage, of which sample i drives "
-            f"number kind[i]{made_by(vehicle)}"
+        raise wrong_kind(
+            "vehicle",
+            vehicle,
+            "must be a Vehicle, a train, a Passage, a list of Passage for one event, or a list of "
+            "vehicles or of lists of Passage, of which sample i drives number kind[i]"
+            f"{made_by(vehicle)}",
         )
     if all(isinstance(each, Passage) for each in vehicle):
         return (tuple(vehicle),)
     events = []
     for i, each in enumerate(vehicle):
         if isinstance(each, Passage) and any(isinstance(other, Wheels) for other in vehicle):
-            raise TypeError(
-                f"vehicle[{i}] = {shown(each)}: a Passage beside vehicles could be part of one "
-                "event or an event of its own; give a list of Passage, or a list of lists of them"
+            raise wrong_kind(
+                f"vehicle[{i}]",
+                each,
+                "a Passage beside vehicles could be part of one event or an event of its own; give "
+                "a list of Passage, or a list of lists of them",
             )
         try:
             events.append(passages_of(each))
-        except TypeError:
-            raise TypeError(
-                f"vehicle[{i}] = {shown(each)}: must be a vehicle, a train, or a list of "
-                f"Passage{made_by(each)}"
-            ) from None
+        except KindError:
+            allowed = f"must be a vehicle, a train, or a list of Passage{made_by(each)}"
+            raise wrong_kind(f"vehicle[{i}]", each, allowed) from None
     return tuple(events)
 
 

@@ -7,17 +7,21 @@ from collections.abc import Iterable
 from functools import wraps
 from typing import Any, Final, TypeVar, cast
 
-from spanwise._shown import LONGEST
+from spanwise._shown import LONGEST, shown
 
 T = TypeVar("T")
 
 
 def suggesting(target: T) -> T:
-    """A function or a class that suggests the nearest keyword for one that it does not have."""
+    """A function or a class that suggests the nearest keyword for one that it does not have.
+
+    Of what is given by position and goes by name, it says by which.
+    """
     function: Any = vars(target)["__init__"] if isinstance(target, type) else target
     # Not by `inspect`, which takes long for what is done for every class on import.
     code = getattr(function, "__wrapped__", function).__code__
     known = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    placed, named_only = known[: code.co_argcount], known[code.co_argcount :]
     name = getattr(target, "__qualname__", "")
 
     @wraps(function)
@@ -26,6 +30,11 @@ def suggesting(target: T) -> T:
             if key not in known:
                 said = f"{name}() got an unexpected keyword argument {key!r}"
                 raise TypeError(said + suggestion(key, known))
+        if named_only and len(given) > len(placed):
+            first = " and ".join(each for each in placed if each != "self")
+            what = f"{first} by position and the rest" if first else "all arguments"
+            meant = f"{named_only[0]}={shown(given[len(placed)])}"
+            raise TypeError(f"{name}() takes {what} by name: write {meant}")
         return function(*given, **named)
 
     if not isinstance(target, type):

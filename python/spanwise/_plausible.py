@@ -29,6 +29,9 @@ Event: TypeAlias = Sequence[Passage]
 #: be. Bridges with slender spans lie far below the lower limit, few come near to the upper one.
 _LOWER, _UPPER = 10.0, 5.0
 
+#: Span from which on one that is too slow is rather given in other units [m].
+_ENDLESS: Final = 1000.0
+
 #: Span below which the lower limit says nothing [m]: strips in laboratories are as slow.
 _SHORT: Final = 4.0
 
@@ -40,8 +43,10 @@ _DEFLECTED: Final = 1.0 / 20.0
 #: laboratory [kg].
 _LIGHT, _FULL_SIZE = 275.0, 5e3
 
-#: Speeds that lorries, cars and trains do not reach [m/s], and the axle load of a lorry [N].
-_LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _HEAVY = 45.0, 60.0, 120.0, 25e3
+#: Speeds that lorries, cars, trains and those of heavy axles do not reach [m/s], and the axle loads
+#: of a lorry and of such a train [N].
+_LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _FREIGHT_SPEED = 45.0, 60.0, 120.0, 70.0
+_HEAVY, _FREIGHT = 25e3, 215e3
 
 #: What tells trains: the stiffness of a wheel on a rail [N/m]; the length of forces or masses in a
 #: row [m], which no lorry has, or none with axles loaded alike, as those of a coach are.
@@ -75,7 +80,7 @@ def doubts(
     moving = float(bridge.masses.sum()) * span / bridge.length
     gravity = conditions.gravity
     found = [*_frequency(bridge, span, first_frequency), *_damping(conditions)]
-    seen: set[str] = set()
+    seen = {"deflection"} if _is_endless(bridge, span, first_frequency) else set()
     for passage in (each for event in events for each in event):
         fastest = _fastest(passage, speed, drive)
         surface = passage.road or road
@@ -123,10 +128,21 @@ def _ends_are_held(bridge: Bridge) -> bool:
     return {0.0, bridge.length} <= {x for x, _ in bridge.supports}
 
 
+def _is_endless(bridge: Bridge, span: float, first: float) -> bool:
+    """Whether the length of the bridge is to be doubted before all that follows from it."""
+    return bridge.described and span >= _ENDLESS and first < _limits(span)[0] / _LOWER
+
+
 def _frequency(bridge: Bridge, span: float, first: float) -> Iterator[str]:
-    """Of the bridge: EI or mass in other units."""
+    """Of the bridge: lengths, EI or mass in other units."""
     low, high = _limits(span)
     if low / _LOWER < first < high * _UPPER:
+        return
+    if _is_endless(bridge, span, first):
+        yield (
+            f"spans: the longest is {span:g} m, and the first frequency of the bridge {first:.3g} "
+            "Hz; are lengths in mm instead of m?"
+        )
         return
     # A cantilever is slower than a span twice as long.
     if first < low and not _ends_are_held(bridge):
@@ -223,7 +239,8 @@ def _speed(passage: Passage, speed: float) -> str | None:
         alike = loads.min() >= _ALIKE * loads.max()
         rails = truck.wheelbase >= (_LONG_ALIKE if alike else _LONG)
     on_road = _LORRY_SPEED if loads.max() > _HEAVY else _CAR_SPEED
-    if speed <= (_RAIL_SPEED if rails else on_road):
+    on_rails = _FREIGHT_SPEED if loads.max() > _FREIGHT else _RAIL_SPEED
+    if speed <= (on_rails if rails else on_road):
         return None
     return (
         f"speed = {speed:g}: m/s, which is {3.6 * speed:.0f} km/h; if {speed:g} km/h are meant, "

@@ -17,15 +17,15 @@ from spanwise._case_tables import (
     check_tables,
     home,
 )
-from spanwise._casefile import CaseError, parse_toml, read_text
-from spanwise._checks import file_path, items, mapping, shown
+from spanwise._casefile import CaseError, read_text, settings_of, tables_of
+from spanwise._checks import file_path, items, mapping
 from spanwise._checks import text as checks_text
 from spanwise._renamed import renamed
 from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.ensembles import Ensemble
-from spanwise.errors import InputError
+from spanwise.errors import InputError, wrong_kind
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
 from spanwise.schema import (
@@ -122,12 +122,12 @@ class Case(Hashed):
 
     def __post_init__(self) -> None:
         if not isinstance(self.bridge, Bridge):
-            raise TypeError(f"bridge = {shown(self.bridge)}: must be a Bridge")
+            raise wrong_kind("bridge", self.bridge, "must be a Bridge")
         passages = _passages("passages", self.passages)
         if not passages:
             raise InputError("passages", "[]", "must have at least one")
         if self.road is not None and not isinstance(self.road, Road):
-            raise TypeError(f"road = {shown(self.road)}: must be a Road")
+            raise wrong_kind("road", self.road, "must be a Road")
         checks_text("source", self.source)
         events = items("events", self.events, "a list of kinds of event")
         made: dict[str, Any] = {
@@ -154,7 +154,7 @@ class Case(Hashed):
 
     @classmethod
     def read(cls, path: str | Path, settings: Mapping[str, Any] | None = None) -> Case:
-        """Read a case file.
+        """Read a case file, or the JSON of results, of which it is the case again.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Case(Hashed):
     ) -> tuple[Road, tuple[Path, ...]]:
         """The road of a case file, of which nothing else is needed, and the files it is read from.
 
-        A file that is not called .toml is a measured profile.
+        A file that is not called .toml or .json is a measured profile.
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Case(Hashed):
         """
         path = file_path("path", path)
         reading = Reading(path.parent, home)
-        if path.suffix.lower() == ".toml":
+        if path.suffix.lower() in (".toml", ".json"):
             source, tables = _read(path, settings)
             with within(source, CaseError):
                 check_tables(tables)
@@ -239,12 +239,12 @@ class Case(Hashed):
             As from `read`.
         """
         checks_text("source", source)
-        tables = parse_toml(checks_text("text", text), source)
+        tables = tables_of(checks_text("text", text), source)
         return cls._of(tables, source, file_path("folder", folder))
 
     @classmethod
     def from_dict(cls, tables: Table, source: str = "case", folder: str | Path = ".") -> Case:
-        """A case from the tables of a case file, such as the ``settings`` of a report.
+        """A case from the tables of a case file, or from all that `Run.to_dict` tells.
 
         Parameters
         ----------
@@ -261,7 +261,7 @@ class Case(Hashed):
         checks_text("source", source)
         with within(source, CaseError):
             mapping("tables", tables, "the tables of a case by name")
-        return cls._of(tables, source, file_path("folder", folder))
+        return cls._of(settings_of(tables), source, file_path("folder", folder))
 
     @classmethod
     def _of(cls, tables: Table, source: str, folder: Path) -> Case:
@@ -274,9 +274,6 @@ class Case(Hashed):
         with within(source, CaseError):
             check_tables(tables)
             check_complete(tables)
-        sampling = {**tables.get("ensemble", {})}
-        if "road" in sampling and "road" not in tables:  # where the settings of an ensemble have it
-            tables = {**tables, "road": sampling.pop("road")}
         bridge = read("bridge", bridge_of)
         road = read("road", reading.road) if "road" in tables else None
         if "events" in tables:
@@ -287,7 +284,8 @@ class Case(Hashed):
             each = enumerate(tables["traffic"])
             events = [tuple(read("traffic", passage_of, one, where=_number(k)) for k, one in each)]
         kinds = tuple(events) if len(events) > 1 else ()
-        crossing, files = tables.get("crossing", {}), tuple(reading.files)
+        crossing, sampling = (tables.get(name, {}) for name in ("crossing", "ensemble"))
+        files = tuple(reading.files)
         return cls(bridge, events[0], crossing, road, source, files, sampling, kinds)
 
     @property
@@ -371,14 +369,14 @@ def _passages(key: str, given: object) -> tuple[Passage, ...]:
     passages = items(key, given, "a list of Passage")
     for i, each in enumerate(passages):
         if not isinstance(each, Passage):
-            raise TypeError(f"{key}[{i}] = {shown(each)}: must be a Passage")
+            raise wrong_kind(f"{key}[{i}]", each, "must be a Passage")
     return tuple(passages)
 
 
 def _read(path: Path, settings: Mapping[str, Any] | None) -> tuple[str, dict[str, Any]]:
     """The tables of a file with settings in place of its own, and what messages call them."""
     source = str(path)
-    tables = parse_toml(read_text(path), source)
+    tables = tables_of(read_text(path), source)
     if settings is None or settings == {}:
         return source, tables
     with within(source, CaseError):

@@ -8,7 +8,6 @@ from typing import TypeAlias
 import numpy as np
 
 from spanwise import _core
-from spanwise._checks import shown
 from spanwise._computed import Computed
 from spanwise._conditions import FOX_GOODWIN, Conditions, Crossing, Recovery
 from spanwise._keys import alike, suggesting
@@ -18,7 +17,7 @@ from spanwise._warnings import PlausibilityWarning, warn
 from spanwise._wheels import GRAVITY, Wheels
 from spanwise.bridge import Bridge
 from spanwise.damping import Damping
-from spanwise.errors import InputError
+from spanwise.errors import InputError, wrong_kind
 from spanwise.roads import Road, Smooth
 from spanwise.runs import Run
 from spanwise.traffic import Drive, Passage, Speeds, plain_drive
@@ -163,7 +162,7 @@ def cross(
     """
     asked = Crossing.of(locals())
     if not isinstance(bridge, Bridge):
-        raise TypeError(f"bridge = {shown(bridge)}: must be a Bridge")
+        raise wrong_kind("bridge", bridge, "must be a Bridge")
     passages = passages_of(vehicle)
     surface = surface_of(road)
     speed, driven = asked.speed, asked.drive
@@ -206,7 +205,7 @@ def cross(
 def surface_of(road: object) -> Road:
     """The road given, or a smooth one."""
     if road is not None and not isinstance(road, Road):
-        raise TypeError(f'road = {shown(road)}: must be a Road, such as sw.ISO8608("C")')
+        raise wrong_kind("road", road, 'must be a Road, such as sw.ISO8608("C")')
     return Smooth() if road is None else road
 
 
@@ -221,13 +220,11 @@ def passages_of(vehicle: object) -> tuple[Passage, ...]:
             if not isinstance(each, Passage):
                 row = "; sw.convoy makes passages of vehicles in a row"
                 hint = row if isinstance(each, Wheels) else made_by(each)
-                raise TypeError(f"vehicle[{i}] = {shown(each)}: must be a Passage{hint}")
+                raise wrong_kind(f"vehicle[{i}]", each, f"must be a Passage{hint}")
         if vehicle:
             return tuple(vehicle)
-    raise TypeError(
-        f"vehicle = {shown(vehicle)}: must be a Vehicle, a train, a Passage or a list of Passage"
-        f"{made_by(vehicle)}"
-    )
+    allowed = f"must be a Vehicle, a train, a Passage or a list of Passage{made_by(vehicle)}"
+    raise wrong_kind("vehicle", vehicle, allowed)
 
 
 def made_by(name: object) -> str:

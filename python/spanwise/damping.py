@@ -128,6 +128,11 @@ def resolved(
     if isinstance(damping, np.ndarray):
         return [], damping
     if isinstance(damping, list):
+        for ratio in damping:
+            if 1.0 <= ratio < 100.0:
+                percent = f"for {ratio:g} % write {ratio / 100.0:g}"
+                said = f"must be a ratio to critical, from 0 to below 1; {percent}"
+                raise InputError("damping", f"{ratio:g}", said)
         return damping, None
     ratios = damping.ratios(frequencies())
     for mode, ratio in enumerate(ratios, start=1):

@@ -44,6 +44,15 @@ class InputError(ValueError):
         return type(self)(key, self.value, self.allowed)
 
 
+class KindError(InputError, TypeError):
+    """A value of a kind that is not allowed, a TypeError too."""
+
+
 def refused(key: str, value: object, allowed: str) -> InputError:
     """The error about a value of whatever kind, which it shows on one line."""
     return InputError(key, shown(value), allowed)
+
+
+def wrong_kind(key: str, value: object, allowed: str) -> KindError:
+    """The error about a value that is not of the kind it should be."""
+    return KindError(key, shown(value), allowed)

@@ -14,13 +14,12 @@ from spanwise._checks import (
     numbers,
     one_of,
     positive,
-    shown,
     whole_from,
 )
 from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
-from spanwise.errors import InputError, refused
+from spanwise.errors import InputError, refused, wrong_kind
 from spanwise.roads import Road
 from spanwise.vehicles import AnyVehicle
 
@@ -197,9 +196,9 @@ class Passage:
 
     def __post_init__(self) -> None:
         if not isinstance(self.vehicle, Wheels):
-            raise TypeError(f"vehicle = {shown(self.vehicle)}: must be a Vehicle or a train")
+            raise wrong_kind("vehicle", self.vehicle, "must be a Vehicle or a train")
         if self.road is not None and not isinstance(self.road, Road):
-            raise TypeError(f'road = {shown(self.road)}: must be a Road, such as sw.ISO8608("C")')
+            raise wrong_kind("road", self.road, 'must be a Road, such as sw.ISO8608("C")')
         if self.speed is not None:
             object.__setattr__(self, "speed", positive("speed", self.speed))
         if self.drive is not None:
@@ -272,7 +271,7 @@ def convoy(
     passages, at = [], not_negative("entry", entry)
     for i, (vehicle, gap) in enumerate(zip(vehicles, [0.0, *gaps], strict=False)):
         if not isinstance(vehicle, Wheels):
-            raise TypeError(f"vehicles[{i}] = {shown(vehicle)}: must be a Vehicle or a train")
+            raise wrong_kind(f"vehicles[{i}]", vehicle, "must be a Vehicle or a train")
         at += gap
         if at == float("inf"):
             raise InputError(f"headway[{i - 1}]", f"{gap:g} s", "is too large")

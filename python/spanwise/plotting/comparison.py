@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spanwise._checks import choice, counts, mapping, numbers, shown, text
-from spanwise.errors import InputError, refused
+from spanwise.errors import InputError, refused, wrong_kind
 from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
 from spanwise.plotting.style import (
     LINES,
@@ -43,7 +43,7 @@ def compare_impact_factors(
     """
     for name, each in mapping("runs", runs, "runs by name").items():
         if not isinstance(each, Run):
-            raise TypeError(f"runs[{shown(name)}] = {shown(each)}: must be a Run")
+            raise wrong_kind(f"runs[{shown(name)}]", each, "must be a Run")
     if not runs:
         raise InputError("runs", None, "give at least one run")
     titles = along_bridge()

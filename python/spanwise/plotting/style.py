@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
-from spanwise._checks import finite, numbers, shown
+from spanwise._checks import finite, numbers
 from spanwise._door import require
+from spanwise.errors import wrong_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,7 +97,7 @@ def axes_for(ax: Axes | None, height: float = HEIGHT) -> Axes:
     from matplotlib.axes import Axes
 
     if not isinstance(ax, Axes):
-        raise TypeError(f"ax = {shown(ax)}: must be Axes of matplotlib")
+        raise wrong_kind("ax", ax, "must be Axes of matplotlib")
     return ax
 
 
@@ -107,7 +108,7 @@ def figure_for(figure: Figure | SubFigure | None, height: float) -> Figure | Sub
     from matplotlib.figure import FigureBase
 
     if not isinstance(figure, FigureBase):
-        raise TypeError(f"figure = {shown(figure)}: must be a Figure or SubFigure of matplotlib")
+        raise wrong_kind("figure", figure, "must be a Figure or SubFigure of matplotlib")
     return figure
 
 
