@@ -517,6 +517,11 @@ def test_wrong_objects() -> None:
         sw.cross(1, vehicle(), speed=20.0)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"vehicle = None: must be a Vehicle"):
         sw.cross(two_spans(), None, speed=20.0)  # type: ignore[arg-type]
+    # As all that is not allowed, it knows its name, what it is and what is allowed.
+    with pytest.raises(sw.InputError, match=r"road = 'C': must be a Road, such as") as caught:
+        cross(road="C")
+    assert (caught.value.key, caught.value.value) == ("road", "'C'")
+    assert caught.value.allowed.startswith("must be a Road")
 
 
 @pytest.mark.parametrize("forces", [(1.0,), (1.0, 2.0, 3.0), ()])
@@ -619,6 +624,20 @@ def test_a_keyword_misspelt_is_suggested(
     )
     with pytest.raises(TypeError, match=says):
         call()
+
+
+def test_what_goes_by_name_is_not_given_by_position() -> None:
+    said = r"^cross\(\) takes bridge and vehicle by position and the rest by name: write speed=20$"
+    with pytest.raises(TypeError, match=said):
+        loose.cross(two_spans(), vehicle(), 20)
+    with pytest.raises(TypeError, match=r"^Bridge\(\) takes all arguments by name: write spans=\["):
+        loose.Bridge([18.0, 18.0], 2e9, 6e3)
+
+
+def test_a_ratio_in_percent_is_written_as_a_ratio() -> None:
+    for damping in (2, [0.01, 2.0, 0.02]):
+        with pytest.raises(ValueError, match=r"damping = 2: .* below 1; for 2 % write 0\.02$"):
+            cross(damping=damping)
 
 
 def test_a_keyword_like_none_is_refused_as_it_is() -> None:

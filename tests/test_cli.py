@@ -114,6 +114,15 @@ def test_speed_and_road_go_before_those_of_the_case(
     assert settings["crossing"]["speed"] == 15.0
     assert settings["road"] == sw.ISO8608("B", seed=3).arguments | {"band": [0.01, 4.0]}
     case.write_text(CASE + '[[road]]\nkind = "iso-8608"\nG = 2e-5\n' + JOINT, encoding="utf-8")
+    # A road of another class keeps the seed of the case.
+    assert main(["cross", str(case), "--road", "D", "--json", "-"]) == 0
+    road = json.loads(capsys.readouterr().out)["settings"]["road"]
+    assert (road["class"], road["seed"]) == ("D", 0)
+    case.write_text(CASE + ROAD, encoding="utf-8")
+    assert main(["cross", str(case), "--road", "D", "--json", "-"]) == 0
+    road = json.loads(capsys.readouterr().out)["settings"]["road"]
+    assert (road["class"], road["seed"]) == ("D", 2)
+    case.write_text(CASE + '[[road]]\nkind = "iso-8608"\nG = 2e-5\n' + JOINT, encoding="utf-8")
     assert main(["cross", str(case), "--seed", "3", "--json", "-"]) == 0
     road = json.loads(capsys.readouterr().out)["settings"]["road"]
     assert (road[0]["G"], road[0]["seed"], road[1]["kind"]) == (2e-5, 3, "joint")
@@ -223,8 +232,8 @@ def test_a_profile_in_place_of_a_case(
         (["road", "a.csv", "--profile_start", "3"], "(did you mean '--profile-start'?)"),
         (["vehicles", "t44", "t45"], "unrecognized arguments: t45\n"),
         (
-            ["ensemble", "a.toml", "--samples", "3", "--plot", "20"],
-            "--plot 20 (an option of spanwise cross)\n",
+            ["cross", "a.toml", "--samples", "20"],
+            "--samples 20 (an option of spanwise ensemble)\n",
         ),
         (["road", "a.toml", "--seed=2"], "--seed=2 (an option of spanwise cross and "),
         (["croos", "a.toml"], "(did you mean 'cross'?)\n"),
@@ -352,6 +361,63 @@ def test_figures(case: Path, tmp_path: Path) -> None:
     for name in FIGURES:
         assert (tmp_path / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "<svg" in (tmp_path / "figures" / f"{name}.svg").read_text(encoding="utf-8")
+
+
+def test_tables_and_figures_of_an_ensemble(
+    case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Which there are: what is on them is looked at elsewhere.
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda *_, **__: None)
+    case.write_text(CASE.replace("step = 5e-3\nbeta = 0.25\n", "") + ROAD, encoding="utf-8")
+    table, figures = tmp_path / "many.csv", tmp_path / "figures"
+    given = ["--samples", "4", "--csv", str(table), "--plot", str(figures)]
+    assert main(["ensemble", str(case), *given]) == 0
+    factors = [f"impact_factor_{name}" for name in ("deflection", "sagging", "hogging", "shear")]
+    names = {"deflection", "moment", "shear", "reactions", *factors}
+    names |= {f"impact_factor_{name}" for name in ("reactions", "axle_loads")}
+    assert left(figures) == {f"{name}.{form}" for name in names for form in ("png", "svg")}
+    expected = tmp_path / "expected.csv"
+    sw.Case.read(case).ensemble(samples=4).to_csv(expected)
+    assert table.read_bytes() == expected.read_bytes()
+    capsys.readouterr()
+    # Told before the work of an hour.
+    for module, option in (("pandas", "--csv"), ("matplotlib", "--plot")):
+        monkeypatch.setitem(sys.modules, module, None)
+        asked = ["ensemble", str(case), "--samples", "100000000", option, str(tmp_path / "x")]
+        assert main(asked) == 2
+        assert f"this needs {module}" in capsys.readouterr().err
+
+
+def test_results_are_cases_again(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case.write_text(CASE + ROAD, encoding="utf-8")
+    results, again = tmp_path / "run.json", tmp_path / "again.json"
+    assert main(["cross", str(case), "--json", str(results)]) == 0
+    first = capsys.readouterr().out
+    assert main(["cross", str(results), "--json", str(again)]) == 0
+    assert capsys.readouterr().out == first
+    assert again.read_bytes() == results.read_bytes()
+    told = json.loads(results.read_text(encoding="utf-8"))
+    run = sw.Case.read(results).run()
+    assert run.to_dict() == told
+    assert sw.Case.from_dict(told).run() == run
+    # Keys are set, and roads looked at, as those of any case; what was read is not written over.
+    assert main(["cross", str(results), "--set", "crossing.modes=1", "--json", "-"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["frequencies"]) == 1
+    assert main(["cross", str(results), "--json", str(results)]) == 2
+    assert "was read, and is not overwritten" in capsys.readouterr().err
+    assert main(["road", str(results)]) == 0
+    assert "road      iso-8608 class C" in capsys.readouterr().out
+    case.write_text(CASE.replace("step = 5e-3\nbeta = 0.25\n", "") + ROAD, encoding="utf-8")
+    assert main(["ensemble", str(case), "--samples", "3", "--json", str(results)]) == 0
+    assert main(["road", str(results)]) == 0
+    assert "road      iso-8608 class C" in capsys.readouterr().out
+    digest = json.loads(results.read_text(encoding="utf-8"))["hash"]
+    assert sw.Case.read(results).ensemble().hash == digest
+    results.write_text('{"version": 1,', encoding="utf-8")
+    assert main(["cross", str(results)]) == 2
+    assert f"{results}: is not valid JSON: Expecting property name" in capsys.readouterr().err
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

@@ -258,3 +258,11 @@ def test_docstrings_name_the_results() -> None:
     for name in (".max", ".min", ".static_max", ".max_time", ".max_position"):
         assert name in told
     assert "bridge as given" in " ".join((sw.Ensemble.__doc__ or "").split())
+
+
+def test_deck_motion_has_no_static_value_and_no_sign() -> None:
+    text = ensemble(samples=3, quantities=["deflection", "slope", "acceleration"]).summary()
+    rows = {line.split(" [")[0]: line.split() for line in text.split("\n")}
+    assert rows["acceleration"][7] == "-"
+    assert float(rows["deflection, down"][8]) > 0.0
+    assert "slope, acceleration: the larger of both signs, without its sign" in text

@@ -126,12 +126,28 @@ def value_of(text: str) -> Any:
     return table["value"] if len(table) == 1 else text
 
 
+class OfClass(dict[str, Any]):
+    """A random road of another class: a table that keeps the seed of the one that it replaces."""
+
+    def __init__(self, letter: str) -> None:
+        super().__init__(kind="iso-8608")
+        self["class"] = letter
+
+    def after(self, road: Any) -> dict[str, Any]:
+        """The table that stands in place of a road, or of the parts of one."""
+        parts = road if isinstance(road, list) else [road]
+        seeds = [each["seed"] for each in parts if isinstance(each, Mapping) and "seed" in each]
+        return {**self, **({"seed": seeds[0]} if seeds else {})}
+
+
 def assigned(tables: Table, settings: Mapping[str, Any]) -> dict[str, Any]:
     """The tables with values in place of theirs, by keys such as ``vehicle.bodies[0].mass``."""
     changed = deepcopy({**tables})
     for key, value in settings.items():
         if not _KEY.fullmatch(str(key)):
             raise InputError(shown(key), None, "must be table and key, such as crossing.speed")
+        if isinstance(value, OfClass):
+            value = value.after(changed.get(key))
         _assign(changed, key, deepcopy(value))
     return changed
 

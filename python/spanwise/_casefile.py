@@ -72,8 +72,9 @@ def tables_of(text: str, source: str) -> dict[str, Any]:
 
 def settings_of(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     """The tables of a case, or those in all that is told of results, the road in its own place."""
-    if {"version", "settings"} <= tables.keys() and isinstance(tables["settings"], Mapping):
-        tables = tables["settings"]
+    told = tables.get("settings")
+    if isinstance(told, Mapping) and "bridge" in told:
+        tables = told
     many = tables.get("ensemble")
     if not isinstance(many, Mapping) or "road" not in many or "road" in tables:
         return tables

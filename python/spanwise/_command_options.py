@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from spanwise._case_tables import assignment, value_of
+from spanwise._case_tables import OfClass, assignment, value_of
 from spanwise._renamed import renamed
 
 #: Examples that the help of a command has.
@@ -73,6 +73,12 @@ def add_json(command: argparse.ArgumentParser, what: str) -> None:
     command.add_argument("--json", metavar="FILE", help=help)
 
 
+def add_plot(command: argparse.ArgumentParser) -> None:
+    """Add the option that asks for figures."""
+    help = "write figures there, as PNG and SVG; needs spanwise[plot]"
+    command.add_argument("--plot", type=Path, metavar="DIR", help=help)
+
+
 def add_set(command: argparse.ArgumentParser, table: str) -> None:
     """Add ``--set``, of which keys without a table are of this one if it has them."""
     command.epilog = ROAD_EXAMPLE if table == "road" else EXAMPLE
@@ -107,7 +113,7 @@ add_road: Final = partial(
     add_key,
     option="--road",
     key="road",
-    type=lambda letter: {"kind": "iso-8608", "class": letter},
+    type=OfClass,
     metavar="CLASS",
-    help="a random road of this class of ISO 8608, A to H, not that of the case",
+    help="a random road of this class of ISO 8608, A to H, with the seed of the case, not its road",
 )

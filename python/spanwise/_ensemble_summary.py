@@ -191,7 +191,7 @@ def _step(ensemble: Ensemble) -> str:
 
 def _extremes(ensemble: Ensemble) -> Table:
     """Of the largest along the bridge in each sample."""
-    rows, varied = [], False
+    rows, varied, unsigned = [], False, []
     for of, sense in ((each, sense) for each in ensemble.responses for sense in each.reported):
         extremes, (unit, scale) = ensemble.envelope(of.name), of.shown
         if len(extremes.x) == 0:
@@ -203,11 +203,18 @@ def _extremes(ensemble: Ensemble) -> Table:
         beside = largest_of_each(static[sound] if len(static) == len(sound) else static)
         varied = varied or differ(beside[:, None])
         name = f"{of.called(sense)}{_all_the_way(ensemble, of)} [{unit}]"
-        columns = *np.percentile(most[sound], PERCENTILES), most[sound].max(), np.median(beside)
+        # Deck motion has no static value.
+        still = np.median(beside) if beside.any() else np.nan
+        columns = *np.percentile(most[sound], PERCENTILES), most[sound].max(), still
         rows.append([name, *columns, _at(of, extremes, where)])
+        if sense == "either" and (extremes.min < 0.0).any():
+            unsigned.append(of.noun)
+    notes = STATIC_BY_SAMPLE if varied else STATIC
+    if unsigned:
+        notes = (*notes, f"{', '.join(unsigned)}: the larger of both signs, without its sign")
     title = "static, median" if varied else "static"
     heads = ["largest in a sample", *HEADS, title, "at"]
-    return Table(heads, rows, ["<", *[".3f"] * 6, "<"], STATIC_BY_SAMPLE if varied else STATIC)
+    return Table(heads, rows, ["<", *[".3f"] * 6, "<"], notes)
 
 
 def _all_the_way(ensemble: Ensemble, of: Response) -> str:

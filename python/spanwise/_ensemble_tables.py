@@ -61,12 +61,15 @@ def write_parquet(ensemble: Ensemble, path: Path, by: By) -> None:
 
 def write_csv(ensemble: Ensemble, path: Path, by: By) -> None:
     """The table as a CSV file, complete or not at all."""
+    write_files([(path, csv_pieces(ensemble, by))])
+
+
+def csv_pieces(ensemble: Ensemble, by: By) -> Iterator[bytes]:
+    """The table as the text of a CSV file, some rows at a time."""
     table = frame(ensemble, by)
-    pieces = (
-        table.iloc[start : start + ROWS].to_csv(header=start == 0, lineterminator="\n").encode()
-        for start in range(0, max(len(table), 1), ROWS)
-    )
-    write_files([(path, pieces)])
+    for start in range(0, max(len(table), 1), ROWS):
+        some = table.iloc[start : start + ROWS]
+        yield some.to_csv(header=start == 0, lineterminator="\n").encode()
 
 
 def _by_sample(ensemble: Ensemble) -> Iterator[Column]:

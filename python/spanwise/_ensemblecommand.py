@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from spanwise._checks import whole_from
-from spanwise._command_options import add_case, add_json, add_key, add_road
+from spanwise._command_options import add_case, add_json, add_key, add_plot, add_road
+from spanwise._door import require
 from spanwise._ensemble_files import as_dict, npz_writer
+from spanwise._ensemble_tables import csv_pieces
+from spanwise._figures import figure_files, figures_of_ensemble
 from spanwise._files import Content, check_targets, write_files
 from spanwise._plain import json_lines
 from spanwise.case import Case
@@ -61,6 +66,13 @@ def add_to(commands: _SubParsersAction[Any]) -> None:
         metavar="FILE.npz",
         help="write all extremes of all samples as a NumPy archive",
     )
+    command.add_argument(
+        "--csv",
+        type=Path,
+        metavar="FILE.csv",
+        help="write a table there, one row for each sample; needs spanwise[pandas]",
+    )
+    add_plot(command)
     add_json(command, "percentiles")
     command.set_defaults(work=run)
 
@@ -70,8 +82,11 @@ def run(options: argparse.Namespace) -> str:
     if options.out is not None and options.out.suffix != ".npz":
         raise ValueError(f"--out {options.out}: must end in .npz")
     case = Case.read(options.case, options.settings)
-    named = [Path(each) for each in (options.json, options.out) if each not in (None, "-")]
-    check_targets(named, case.files)
+    given = (options.json, options.out, options.csv)
+    check_targets([Path(each) for each in given if each not in (None, "-")], case.files)
+    for extra, wanted in (("pandas", options.csv), ("plot", options.plot)):
+        if wanted is not None:
+            require("matplotlib" if extra == "plot" else extra, extra=extra)
     if "samples" not in case.sampling:
         raise ValueError(f"--samples: missing; give it, or samples in [ensemble] of {options.case}")
     for key in options.settings:
@@ -82,6 +97,8 @@ def run(options: argparse.Namespace) -> str:
     found = case.ensemble(threads=threads, progress=True)
     text = found.summary() + "\n"
     files: list[tuple[Path, Content]] = []
+    figures: Iterable[tuple[Path, Content]] = []
+    folders = []
     if options.json is not None:
         table = json_lines(as_dict(found))
         if options.json == "-":
@@ -90,5 +107,11 @@ def run(options: argparse.Namespace) -> str:
             files.append((Path(options.json), [table.encode()]))
     if options.out is not None:
         files.append((options.out, npz_writer(found)))
-    write_files(files, inputs=case.files)
+    if options.csv is not None:
+        files.append((options.csv, csv_pieces(found, "sample")))
+    if options.plot is not None:
+        folders.append(options.plot)
+        drawn = figure_files(figures_of_ensemble(found))
+        figures = ((options.plot / name, [content]) for name, content in drawn)
+    write_files(chain(files, figures), folders, case.files)
     return text

@@ -12,9 +12,9 @@ from typing import Any, NoReturn
 
 from spanwise import _ensemblecommand, _roadcommand
 from spanwise._checks import count
-from spanwise._command_options import add_case, add_json, add_key, add_road
+from spanwise._command_options import add_case, add_json, add_key, add_plot, add_road
 from spanwise._core import __version__
-from spanwise._figures import figure_files
+from spanwise._figures import figure_files, figures_of_run
 from spanwise._files import Content, write_files
 from spanwise._keys import suggestion
 from spanwise._run_files import csv_files, json_text
@@ -138,12 +138,7 @@ def _parser() -> _Parser:
     cross.add_argument(
         "--csv", type=Path, metavar="DIR", help="write impact factors, extremes and histories there"
     )
-    cross.add_argument(
-        "--plot",
-        type=Path,
-        metavar="DIR",
-        help="write figures there, as PNG and SVG; needs spanwise[plot]",
-    )
+    add_plot(cross)
     cross.set_defaults(work=_cross)
     _ensemblecommand.add_to(commands)
     vehicles = commands.add_parser(
@@ -183,7 +178,9 @@ def _cross(options: argparse.Namespace) -> str:
     if options.plot is not None:
         folders.append(options.plot)
         # Drawn when their folder is there.
-        figures = ((options.plot / name, [content]) for name, content in figure_files(run))
+        figures = (
+            (options.plot / name, [content]) for name, content in figure_files(figures_of_run(run))
+        )
         files = chain(files, figures)
     write_files(files, folders, case.files)
     return text
