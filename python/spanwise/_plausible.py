@@ -45,7 +45,7 @@ _LIGHT, _FULL_SIZE = 275.0, 5e3
 
 #: Speeds that lorries, cars, trains and those of heavy axles do not reach [m/s], and the axle loads
 #: of a lorry and of such a train [N].
-_LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _FREIGHT_SPEED = 45.0, 60.0, 120.0, 70.0
+_LORRY_SPEED, _CAR_SPEED, _RAIL_SPEED, _FREIGHT_SPEED = 45.0, 60.0, 120.0, 85.0
 _HEAVY, _FREIGHT = 25e3, 215e3
 
 #: What tells trains: the stiffness of a wheel on a rail [N/m]; the length of forces or masses in a
