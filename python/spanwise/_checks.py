@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sequence, Sized
+from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from collections.abc import Set as AbstractSet
 from itertools import islice
 from numbers import Integral, Real
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 Name = TypeVar("Name")
+T = TypeVar("T")
 
 Numbers: TypeAlias = float | Iterable[float]
 
@@ -45,25 +46,23 @@ def number(key: str, value: object) -> float:
 
 def finite(key: str, value: object) -> float:
     """One finite real number as a float; refused in the words of the core, as the two below."""
-    found = number(key, value)
-    if not math.isfinite(found):
-        raise InputError(key, _plain(found), "must be a finite number")
-    return found
+    return _limited(key, value, math.isfinite, "must be a finite number")
 
 
 def positive(key: str, value: object) -> float:
     """One finite real number above 0 as a float."""
-    found = number(key, value)
-    if not (math.isfinite(found) and found > 0.0):
-        raise InputError(key, _plain(found), "must be finite and greater than 0")
-    return found
+    return _limited(key, value, lambda x: 0.0 < x < math.inf, "must be finite and greater than 0")
 
 
 def not_negative(key: str, value: object) -> float:
     """One finite real number, 0 or more, as a float."""
+    return _limited(key, value, lambda x: 0.0 <= x < math.inf, "must be finite and 0 or more")
+
+
+def _limited(key: str, value: object, is_allowed: Callable[[float], bool], allowed: str) -> float:
     found = number(key, value)
-    if not (math.isfinite(found) and found >= 0.0):
-        raise InputError(key, _plain(found), "must be finite and 0 or more")
+    if not is_allowed(found):
+        raise InputError(key, _plain(found), allowed)
     return found
 
 
@@ -168,6 +167,13 @@ def mapping(key: str, value: object, what: str = "a mapping") -> Mapping[Any, An
     """A table of values by name."""
     if not isinstance(value, Mapping):
         raise refused(key, value, f"must be {what}")
+    return value
+
+
+def of_kind(key: str, value: object, kind: type[T], what: str) -> T:
+    """An object of a class."""
+    if not isinstance(value, kind):
+        raise wrong_kind(key, value, f"must be {what}")
     return value
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from spanwise._checks import is_list, items, shown
+from spanwise._checks import is_list, items, of_kind, shown
 from spanwise._events import Speeds
 from spanwise._plan import Plan
 from spanwise._rows import Rows
@@ -57,8 +57,7 @@ def concat(ensembles: Iterable[Ensemble]) -> Ensemble:
         raise wrong_kind("ensembles", ensembles, "must be a list of Ensemble")
     given = items("ensembles", ensembles, "a list of Ensemble")
     for i, each in enumerate(given):
-        if not isinstance(each, Ensemble):
-            raise wrong_kind(f"ensembles[{i}]", each, "must be an Ensemble")
+        of_kind(f"ensembles[{i}]", each, Ensemble, "an Ensemble")
     if not given:
         raise InputError("ensembles", "[]", "must be one or more")
     order = sorted(range(len(given)), key=lambda i: given[i].first)

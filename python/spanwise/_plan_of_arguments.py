@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Final
 
 from numpy.typing import ArrayLike
 
-from spanwise._checks import array, count, flag, whole_from
+from spanwise._checks import array, count, flag, of_kind, whole_from
 from spanwise._conditions import Conditions, Settings
 from spanwise._events import (
     Speeds,
@@ -23,7 +23,7 @@ from spanwise._plan import Plan
 from spanwise._variation import by_parameter, factors_of
 from spanwise.bridge import Bridge
 from spanwise.crossing import check_speed, surface_of
-from spanwise.errors import refused, wrong_kind
+from spanwise.errors import refused
 from spanwise.quantities import RESPONSES, asked, of_bridges, there_are
 from spanwise.roads import Road
 
@@ -74,8 +74,7 @@ class Asked(Settings):
 
 def plan_of(bridge: Bridge, vehicle: object, asked: Asked) -> tuple[Plan, Speeds]:
     """What the arguments of `ensemble` come to, and the speeds as they were given."""
-    if not isinstance(bridge, Bridge):
-        raise wrong_kind("bridge", bridge, "must be a Bridge")
+    of_kind("bridge", bridge, Bridge, "a Bridge")
     events = events_of(vehicle)
     surface = surface_of(asked.road)
     samples, driven = asked.samples, asked.drive

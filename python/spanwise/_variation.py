@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from spanwise import _core
 from spanwise._build import Place, check_known
-from spanwise._checks import array
+from spanwise._checks import array, mapping
 from spanwise._events import Event
 from spanwise._table import listed
 from spanwise._value import Value
-from spanwise.errors import InputError, refused
+from spanwise.errors import InputError
 from spanwise.trains import ForceTrain
 from spanwise.vehicle import Vehicle
 from spanwise.vehicles import AnyVehicle
@@ -146,8 +146,7 @@ def by_parameter(key: str, table: object) -> dict[str, Array]:
     """Numbers by the name of what varies."""
     if table is None:
         return {}
-    if not isinstance(table, Mapping):
-        raise refused(key, table, "must be a mapping from name to numbers")
+    table = mapping(key, table, "a mapping from name to numbers")
     allowed = [name for name in ATTRIBUTES if key == "factors" or name not in OF_BRIDGES]
     strange = {name: None for name in table if name not in ATTRIBUTES}
     check_known(strange, allowed, Place(key), "parameter")

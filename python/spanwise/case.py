@@ -18,15 +18,16 @@ from spanwise._case_tables import (
     home,
 )
 from spanwise._casefile import CaseError, read_text, settings_of, tables_of
-from spanwise._checks import file_path, items, mapping
+from spanwise._checks import file_path, items, mapping, of_kind
 from spanwise._checks import text as checks_text
 from spanwise._renamed import renamed
 from spanwise._value import Hashed
 from spanwise.bridge import Bridge
 from spanwise.crossing import cross
 from spanwise.ensembles import Ensemble
-from spanwise.errors import InputError, wrong_kind
+from spanwise.errors import InputError
 from spanwise.roads import Road, Smooth
+from spanwise.roads.base import A_ROAD
 from spanwise.runs import Run
 from spanwise.schema import (
     Reading,
@@ -121,13 +122,12 @@ class Case(Hashed):
     events: tuple[tuple[Passage, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.bridge, Bridge):
-            raise wrong_kind("bridge", self.bridge, "must be a Bridge")
+        of_kind("bridge", self.bridge, Bridge, "a Bridge")
         passages = _passages("passages", self.passages)
         if not passages:
             raise InputError("passages", "[]", "must have at least one")
-        if self.road is not None and not isinstance(self.road, Road):
-            raise wrong_kind("road", self.road, "must be a Road")
+        if self.road is not None:
+            of_kind("road", self.road, Road, A_ROAD)
         checks_text("source", self.source)
         events = items("events", self.events, "a list of kinds of event")
         made: dict[str, Any] = {
@@ -366,11 +366,8 @@ def _number(vehicle: int) -> str:
 
 
 def _passages(key: str, given: object) -> tuple[Passage, ...]:
-    passages = items(key, given, "a list of Passage")
-    for i, each in enumerate(passages):
-        if not isinstance(each, Passage):
-            raise wrong_kind(f"{key}[{i}]", each, "must be a Passage")
-    return tuple(passages)
+    passages = enumerate(items(key, given, "a list of Passage"))
+    return tuple(of_kind(f"{key}[{i}]", each, Passage, "a Passage") for i, each in passages)
 
 
 def _read(path: Path, settings: Mapping[str, Any] | None) -> tuple[str, dict[str, Any]]:

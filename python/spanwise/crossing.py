@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from spanwise import _core
+from spanwise._checks import of_kind
 from spanwise._computed import Computed
 from spanwise._conditions import FOX_GOODWIN, Conditions, Crossing, Recovery
 from spanwise._keys import alike, suggesting
@@ -19,6 +20,7 @@ from spanwise.bridge import Bridge
 from spanwise.damping import Damping
 from spanwise.errors import InputError, wrong_kind
 from spanwise.roads import Road, Smooth
+from spanwise.roads.base import A_ROAD
 from spanwise.runs import Run
 from spanwise.traffic import Drive, Passage, Speeds, plain_drive
 from spanwise.vehicles import PRESETS, AnyVehicle
@@ -161,8 +163,7 @@ def cross(
     .. [1] H. Kishan and R. W. Traill-Nash, IABSE Publications 33 (1973).
     """
     asked = Crossing.of(locals())
-    if not isinstance(bridge, Bridge):
-        raise wrong_kind("bridge", bridge, "must be a Bridge")
+    of_kind("bridge", bridge, Bridge, "a Bridge")
     passages = passages_of(vehicle)
     surface = surface_of(road)
     speed, driven = asked.speed, asked.drive
@@ -204,9 +205,7 @@ def cross(
 
 def surface_of(road: object) -> Road:
     """The road given, or a smooth one."""
-    if road is not None and not isinstance(road, Road):
-        raise wrong_kind("road", road, 'must be a Road, such as sw.ISO8608("C")')
-    return Smooth() if road is None else road
+    return Smooth() if road is None else of_kind("road", road, Road, A_ROAD)
 
 
 def passages_of(vehicle: object) -> tuple[Passage, ...]:

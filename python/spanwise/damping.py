@@ -10,7 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from spanwise._build import Maker, Place, within
-from spanwise._checks import array, is_list, items, number, numbers, pair, refuse_where, shown
+from spanwise._checks import (
+    array,
+    is_list,
+    items,
+    not_negative,
+    number,
+    numbers,
+    pair,
+    refuse_where,
+    shown,
+)
 from spanwise.errors import InputError
 
 Array: TypeAlias = NDArray[np.float64]
@@ -40,9 +50,7 @@ class Rayleigh:
 
     def __post_init__(self) -> None:
         for key in ("alpha", "beta"):
-            value = number(f"Rayleigh {key}", getattr(self, key))
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError(f"Rayleigh {key}", value, "must be finite and 0 or more")
+            value = not_negative(f"Rayleigh {key}", getattr(self, key))
             object.__setattr__(self, key, value)
 
     @classmethod

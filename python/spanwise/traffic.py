@@ -12,6 +12,7 @@ from spanwise._checks import (
     items,
     not_negative,
     numbers,
+    of_kind,
     one_of,
     positive,
     whole_from,
@@ -19,8 +20,9 @@ from spanwise._checks import (
 from spanwise._toml import table_of
 from spanwise._value import Brief
 from spanwise._wheels import Wheels
-from spanwise.errors import InputError, refused, wrong_kind
+from spanwise.errors import InputError, refused
 from spanwise.roads import Road
+from spanwise.roads.base import A_ROAD
 from spanwise.vehicles import AnyVehicle
 
 Direction: TypeAlias = Literal["right", "left"]
@@ -195,10 +197,9 @@ class Passage:
     road: Road | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.vehicle, Wheels):
-            raise wrong_kind("vehicle", self.vehicle, "must be a Vehicle or a train")
-        if self.road is not None and not isinstance(self.road, Road):
-            raise wrong_kind("road", self.road, 'must be a Road, such as sw.ISO8608("C")')
+        of_kind("vehicle", self.vehicle, Wheels, "a Vehicle or a train")
+        if self.road is not None:
+            of_kind("road", self.road, Road, A_ROAD)
         if self.speed is not None:
             object.__setattr__(self, "speed", positive("speed", self.speed))
         if self.drive is not None:
@@ -270,8 +271,7 @@ def convoy(
             raise InputError(f"headway[{i}]", f"{gap:g} s", "must be finite and greater than 0")
     passages, at = [], not_negative("entry", entry)
     for i, (vehicle, gap) in enumerate(zip(vehicles, [0.0, *gaps], strict=False)):
-        if not isinstance(vehicle, Wheels):
-            raise wrong_kind(f"vehicles[{i}]", vehicle, "must be a Vehicle or a train")
+        of_kind(f"vehicles[{i}]", vehicle, Wheels, "a Vehicle or a train")
         at += gap
         if at == float("inf"):
             raise InputError(f"headway[{i - 1}]", f"{gap:g} s", "is too large")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spanwise._checks import choice, counts, mapping, numbers, shown, text
-from spanwise.errors import InputError, refused, wrong_kind
+from spanwise._checks import choice, counts, mapping, numbers, of_kind, shown, text
+from spanwise.errors import InputError, refused
 from spanwise.plotting.factors import along_bridge, mask_note, plot_masked
 from spanwise.plotting.style import (
     LINES,
@@ -42,8 +42,7 @@ def compare_impact_factors(
         Which impact factor, one that there is along the bridge.
     """
     for name, each in mapping("runs", runs, "runs by name").items():
-        if not isinstance(each, Run):
-            raise wrong_kind(f"runs[{shown(name)}]", each, "must be a Run")
+        of_kind(f"runs[{shown(name)}]", each, Run, "a Run")
     if not runs:
         raise InputError("runs", None, "give at least one run")
     titles = along_bridge()

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, ParamSpec, TypeVar
 
-from spanwise._checks import finite, numbers
+from spanwise._checks import finite, numbers, of_kind
 from spanwise._door import require
-from spanwise.errors import wrong_kind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,8 +95,7 @@ def axes_for(ax: Axes | None, height: float = HEIGHT) -> Axes:
         return new_figure(height).subplots()
     from matplotlib.axes import Axes
 
-    if not isinstance(ax, Axes):
-        raise wrong_kind("ax", ax, "must be Axes of matplotlib")
+    of_kind("ax", ax, Axes, "Axes of matplotlib")
     return ax
 
 
@@ -107,8 +105,7 @@ def figure_for(figure: Figure | SubFigure | None, height: float) -> Figure | Sub
         return new_figure(height)
     from matplotlib.figure import FigureBase
 
-    if not isinstance(figure, FigureBase):
-        raise wrong_kind("figure", figure, "must be a Figure or SubFigure of matplotlib")
+    of_kind("figure", figure, FigureBase, "a Figure or SubFigure of matplotlib")
     return figure
 
 

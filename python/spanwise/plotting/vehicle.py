@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from spanwise.plotting import symbols
 from spanwise.plotting.style import GREY, PALE, axes_for, metres, new_figure, styled, whole
 from spanwise.trains import ForceTrain, MovingMasses
-from spanwise.vehicle import Axle, Body, Hinge, Spring, Vehicle
+from spanwise.vehicle import Axle, Spring, Vehicle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,11 +80,6 @@ class _Box:
     centre: float
     floor: float
     roof: float
-
-
-def _ends(body: Body) -> list[Hinge | Spring]:
-    """What couples a body to earlier ones."""
-    return [*([] if body.hinge is None else [body.hinge]), *body.springs]
 
 
 def _levels(vehicle: Vehicle) -> list[int]:

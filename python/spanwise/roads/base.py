@@ -28,6 +28,9 @@ Array: TypeAlias = NDArray[np.float64]
 #: Usual length of road that a tyre averages [m].
 CONTACT_PATCH: Final = 0.24
 
+#: What is to be given as a road.
+A_ROAD: Final = 'a Road, such as sw.ISO8608("C")'
+
 
 @dataclass(frozen=True, repr=False)
 class Road(Brief):

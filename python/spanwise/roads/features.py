@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, fields
 from functools import cached_property
-from math import isfinite
 from typing import ClassVar
 
 from spanwise import _core
-from spanwise._checks import number
-from spanwise.errors import InputError
+from spanwise._checks import finite, number, positive
 from spanwise.roads._doubts import FLAT, HIGH, LONG, STEEPEST, WIDE, doubts_of_metres
 from spanwise.roads.base import CONTACT_PATCH, Road
 
@@ -36,13 +34,6 @@ class _Feature(Road):
     @cached_property
     def _doubts(self) -> tuple[str, ...]:
         return tuple(doubts_of_metres(self, self._largest))
-
-
-def _finite(key: str, value: float) -> float:
-    """A number that the core knows by another name."""
-    if not isfinite(value):
-        raise InputError(key, value, "must be a finite number")
-    return value
 
 
 @dataclass(frozen=True, repr=False)
@@ -172,7 +163,7 @@ class Pothole(_Feature):
     contact_patch: float = CONTACT_PATCH
 
     def _made(self) -> _core.Road:
-        depth = _finite("depth", self.depth)
+        depth = finite("depth", self.depth)
         return _core.Road.plateau(self.at, self.length, -depth, self.edge, self.contact_patch)
 
 
@@ -206,9 +197,8 @@ class Joint(_Feature):
     contact_patch: float = CONTACT_PATCH
 
     def _made(self) -> _core.Road:
-        if not 0.0 < self.gap < float("inf"):
-            raise InputError("gap", self.gap, "must be finite and greater than 0")
-        depth = _finite("depth", self.depth)
+        positive("gap", self.gap)
+        depth = finite("depth", self.depth)
         return _core.Road.plateau(self.at, self.gap, -depth, 0.0, self.contact_patch)
 
     @property
