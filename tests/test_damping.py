@@ -55,7 +55,7 @@ def test_it_is_a_set_of_ratios_and_a_matrix() -> None:
     ("make", "words"),
     [
         (lambda: sw.Rayleigh(-1.0, 0.0), ("alpha", "-1", "0 or more")),
-        (lambda: sw.Rayleigh(0.0, float("nan")), ("beta", "nan", "finite")),
+        (lambda: sw.Rayleigh(0.0, float("nan")), ("beta", "NaN", "finite")),
         (lambda: sw.Rayleigh.from_ratios((2.0, 0.02), (2.0, 0.03)), ("frequency", "differ")),
         (lambda: sw.Rayleigh.from_ratios((0.0, 0.02), (2.0, 0.03)), ("first frequency", "0")),
         (lambda: sw.Rayleigh.from_ratios((1.0, 1.5), (2.0, 0.03)), ("first ratio", "1.5")),
