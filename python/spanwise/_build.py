@@ -30,7 +30,7 @@ T = TypeVar("T")
 Table: TypeAlias = Mapping[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Place:
     """Where in a file a value stands, and how what stands there is read."""
 
@@ -83,7 +83,7 @@ def check_known(
             raise place.refused(f"unknown {what} {shown(key)}{hint}; allowed: {allowed}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Maker(Generic[T]):
     """What makes something of a table, the keys of which are its arguments."""
 

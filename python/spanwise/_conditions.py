@@ -34,7 +34,7 @@ UNDAMPED: Final = (
 )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Settings:
     """How vehicles cross, as it is asked for and checked: what `cross` and `ensemble` share."""
 
@@ -78,7 +78,7 @@ class Settings:
                 object.__setattr__(self, each.name, check(each.name, value))
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Crossing(Settings):
     """What `cross` is asked for."""
 

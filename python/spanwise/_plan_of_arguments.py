@@ -44,7 +44,7 @@ def _responses(key: str, given: object) -> list[str]:
     return [asked(f"{key}[{i}]", each, names) for i, each in enumerate(given)]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Asked(Settings):
     """What `ensemble` is asked for, checked as far as neither bridge nor vehicles matter."""
 

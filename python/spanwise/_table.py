@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MANY: Final = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Table:
     """Rows below heads.
 

@@ -76,7 +76,7 @@ def belongs(key: str, tables: Places | None = None) -> str:
     return f" (belongs in {', '.join(found)})" if found else ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Reading:
     """How the tables of a case are read, and the files that they name."""
 
