@@ -126,6 +126,16 @@ def test_crossings_are_doubted(
     assert len([each for each in told if re.search(says, str(each.message))]) == 1
 
 
+def test_lengths_in_mm_are_doubted_before_all_that_follows_from_them() -> None:
+    with (
+        pytest.warns(sw.PlausibilityWarning) as told,
+        pytest.raises(ValueError, match="road = path"),
+    ):
+        cross(bridge(span=18288.0), car(), road=sw.ISO8608("C"))
+    (doubt,) = told
+    assert str(doubt.message).startswith("spans: the longest is 18288 m")
+
+
 def points(spacing: float = 0.25, scale: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     x = np.arange(0.0, 100.0, spacing)
     return x, scale * ROAD.elevation(x)

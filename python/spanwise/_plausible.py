@@ -230,7 +230,7 @@ def _springs(passage: Passage, gravity: float) -> str | None:
 def _speed(passage: Passage, speed: float) -> str | None:
     """Of a vehicle: speed in km/h. That of a single axle is left to theory."""
     truck = passage.vehicle
-    if speed <= _LORRY_SPEED or len(truck.axle_positions) == 1:
+    if not _LORRY_SPEED < speed < math.inf or len(truck.axle_positions) == 1:
         return None
     loads = truck.static_loads()
     if isinstance(truck, Vehicle):

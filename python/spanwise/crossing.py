@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeAlias
 
-import numpy as np
-
 from spanwise import _core
 from spanwise._checks import of_kind
 from spanwise._computed import Computed
@@ -170,6 +168,19 @@ def cross(
     check_speed([passages], speed, driven)
     uneven = not all((each.road or surface).is_smooth for each in passages)
     conditions = Conditions.filled(bridge, asked, uneven=uneven)
+    doubted = doubts(
+        bridge,
+        bridge.modes(conditions.modes).frequencies[0],
+        [passages],
+        speed=speed,
+        drive=driven,
+        road=surface,
+        conditions=conditions,
+        step=conditions.step,
+    )
+    # Before what it may take, or be refused for.
+    for doubt in doubted:
+        warn(doubt, PlausibilityWarning)
     core = _core.cross(
         bridge._core,
         passages,
@@ -185,19 +196,7 @@ def cross(
         "step": core.step,
     }
     computed = Computed(bridge, passages, conditions, speed, surface, core)
-    doubted = doubts(
-        bridge,
-        core.omega[0] / (2.0 * np.pi),
-        [passages],
-        speed=speed,
-        drive=driven,
-        road=surface,
-        conditions=conditions,
-        step=conditions.step,
-    )
     run = Run(bridge, passages, surface, settings, computed, doubted)
-    for doubt in doubted:
-        warn(doubt, PlausibilityWarning)
     for remark in remarks(run):
         warn(remark)
     return run
