@@ -17,7 +17,7 @@ import pytest
 import spanwise as sw
 
 #: How long work goes on before the signal comes [s].
-UNDISTURBED = 0.1
+UNDISTURBED = 0.05
 
 #: Most time from the signal to its exception [s]: half a second, and more on slower machines.
 PATIENCE = 1.5
@@ -88,11 +88,12 @@ LONG = {
         "sw.cross(b, train, speed=60.0, damping=0.02, modes=1, step=0.005, beta=0.25)",
     ),
     "static loads": (
+        "from spanwise._plan_of_arguments import Asked, plan_of\n"
         "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
-        "found = sw.ensemble(b, TRUCK, samples=30000, speed=20.0, damping=0.02,"
-        " factors={'body_mass': np.linspace(0.9, 1.1, 30000)}, quantities=['deflection'],"
-        " modes=1, sections=[10.0], approach=0.0, tail=0.0, advance=5.0, beta=0.25)",
-        "found._plan.static_loads()",
+        "masses = {'body_mass': np.linspace(0.9, 1.1, 300000)}\n"
+        "plan, _ = plan_of(b, TRUCK, Asked(samples=300000, speed=20.0, damping=0.02,"
+        " factors=masses))",
+        "plan.static_loads()",
     ),
     "a varied train": (
         TRAIN + "b = sw.Bridge(spans=[20.0], EI=3e9, mass=9e3)\n"
