@@ -596,7 +596,7 @@ def test_the_largest_case_file(tmp_path: Path) -> None:
     assert sw.Case.read(path).crossing["modes"] == 3
     with path.open("a", encoding="utf-8") as file:
         file.write("#")
-    with pytest.raises(ValueError, match="has 1048577 bytes; a case file has at most 1048576"):
+    with pytest.raises(ValueError, match="is too large; a case has at most 1048576 bytes"):
         sw.Case.read(path)
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-import stat
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from spanwise._content import content_of
 from spanwise.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,17 +37,11 @@ class CaseError(InputError):
 
 def read_text(path: Path) -> str:
     """The text of a file that may be a case; one that is not is not read."""
-    status = path.stat()
-    if not stat.S_ISREG(status.st_mode):
-        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
-        raise CaseError(path, None, f"is {kind}; a case is a TOML file")
     most = MAX_RESULTS if path.suffix.lower() == ".json" else MAX_BYTES
-    if status.st_size > most:
-        raise CaseError(path, None, f"has {status.st_size} bytes; a case file has at most {most}")
-    with path.open("rb") as file:
-        content = file.read(most + 1)
-    if len(content) > most:  # it has grown since, or did not tell its size
-        raise CaseError(path, None, f"is too large; a case file has at most {most} bytes")
+    try:
+        content = content_of(path, most, "a case", "a TOML file")
+    except InputError as error:
+        raise CaseError.of(error) from None
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import stat
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spanwise._checks import items, number, numbers, positive, shown, text
+from spanwise._content import content_of
 from spanwise._keys import suggestion
 from spanwise.errors import InputError, refused
 from spanwise.roads.sheet import Column, Row, Sheet, erd_of, table_of, without_unit
@@ -58,7 +58,7 @@ def read_points(
     point = None if decimal is None else text("decimal", decimal)
     if point not in (None, ".", ","):
         raise refused("decimal", decimal, "must be . or ,")
-    content = _content(path)
+    content = content_of(path, MAX_BYTES, "a profile", "a file of numbers")
     try:
         encoding = encoding_of(content)
 
@@ -83,19 +83,6 @@ def read_points(
         if found.key.startswith("line "):
             raise InputError(f"{path}, {found.key}", found.value, found.allowed) from None
         raise found.within(str(path)) from None
-
-
-def _content(path: Path) -> bytes:
-    """All of a file that is not too large."""
-    status = path.stat()
-    if not stat.S_ISREG(status.st_mode):
-        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "not a regular file"
-        raise InputError(path, None, f"is {kind}; a profile is a file of numbers")
-    with path.open("rb") as file:
-        content = file.read(MAX_BYTES + 1) if status.st_size <= MAX_BYTES else None
-    if content is None or len(content) > MAX_BYTES:
-        raise InputError(path, None, f"is too large; a profile has at most {MAX_BYTES} bytes")
-    return content
 
 
 def _points(
