@@ -344,6 +344,16 @@ def test_json_alone_on_standard_output(case: Path, capsys: pytest.CaptureFixture
     assert left(case.parent) == set()
 
 
+def test_check(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cross", str(case), "--check"]) == 0
+    run = sw.Case.read(case).run()
+    assert capsys.readouterr().out == f"{run.summary()}\n\n{run.check().summary()}\n"
+    assert main(["cross", str(case), "--check", "--json", "-"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "--check: prints text, and --json - gives none" in err
+
+
 def test_files(case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     json_file, csv_folder = tmp_path / "run.json", tmp_path / "a" / "csv"
     assert main(["cross", str(case), "--json", str(json_file), "--csv", str(csv_folder)]) == 0

@@ -629,6 +629,7 @@ def test_an_odd_value_works_or_is_refused_by_name(
 #: What is public and takes no arguments from users: results, warnings, types.
 RESULTS: Final = {
     "CaseError",
+    "Convergence",
     "Ensemble",
     "Envelope",
     "Extremes",

@@ -7,6 +7,7 @@ from spanwise._keys import suggesting
 from spanwise._warnings import DampingWarning, PlausibilityWarning
 from spanwise.bridge import Bridge, Modes, Settlement
 from spanwise.case import Case, CaseError
+from spanwise.convergence import Convergence
 from spanwise.crossing import cross
 from spanwise.damping import Rayleigh
 from spanwise.ensembles import Ensemble
@@ -45,6 +46,7 @@ __all__ = [
     "Camber",
     "Case",
     "CaseError",
+    "Convergence",
     "DampingWarning",
     "Ensemble",
     "Envelope",

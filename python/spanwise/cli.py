@@ -139,6 +139,12 @@ def _parser() -> _Parser:
         "--csv", type=Path, metavar="DIR", help="write impact factors, extremes and histories there"
     )
     add_plot(cross)
+    cross.add_argument(
+        "--check",
+        action="store_true",
+        help="cross again with half the step, more modes and more stations, and print how far "
+        "extremes are off",
+    )
     cross.set_defaults(work=_cross)
     _ensemblecommand.add_to(commands)
     vehicles = commands.add_parser(
@@ -163,10 +169,14 @@ def _vehicles(options: argparse.Namespace) -> str:
 def _cross(options: argparse.Namespace) -> str:
     """Computes the crossing, writes the files asked for, and gives the text to print."""
     case = Case.read(options.case, options.settings)
+    if options.check and options.json == "-":
+        raise ValueError("--check: prints text, and --json - gives none; give one of the two")
     run = case.run(**_reseeded(options, case))
     files: Iterable[tuple[Path, Content]] = []
     folders = []
     text = run.summary() + "\n"
+    if options.check:
+        text += f"\n{run.check().summary()}\n"
     if options.json == "-":
         text = json_text(run)
     elif options.json is not None:

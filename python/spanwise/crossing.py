@@ -100,7 +100,7 @@ def cross(
         response along the bridge: the step follows from it, by the frequencies of bridge and
         vehicles, the spans and how rough the road is. docs/theory.md, "Time step", tells how, how
         far it was tried, and where it does not hold (accelerations of the deck, damped tyres and
-        masses that meet a lively bridge, very rough roads).
+        masses that meet a lively bridge, very rough roads); `Run.check` tells of a single case.
     step : float, optional
         Longest time step [s], in place of the one that follows.
     beta : float, optional

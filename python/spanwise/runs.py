@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
+    from spanwise.convergence import Convergence
     from spanwise.plotting import RunPlot
 
 Array: TypeAlias = NDArray[np.float64]
@@ -282,6 +283,35 @@ class Run(Responses):
 
     def _repr_html_(self) -> str:
         return view("_run_summary.page")(self)
+
+    def check(self, *, modes: bool = True, stations: bool = True) -> Convergence:
+        """Estimate the errors of the extremes: cross again with half the step, and finer.
+
+        By default the crossing is repeated with twice as many modes and, by itself, with twice as
+        many stations as well, where the bridge has more of these; `Convergence.compared` says where
+        it has not. Modes that a list of damping ratios leaves out are damped as its last. Record
+        and sections are those of the run.
+
+        Parameters
+        ----------
+        modes : bool, optional
+            Whether to compare with more modes.
+        stations : bool, optional
+            Whether to compare with more stations.
+
+        Returns
+        -------
+        Convergence
+            Errors of each response by what they come from, and whether the step keeps `accuracy`.
+
+        Raises
+        ------
+        ValueError
+            If half the step would take more steps than there may be.
+        RuntimeError
+            As from `cross`.
+        """
+        return view("convergence.check")(self, modes, stations)
 
     @property
     def supports(self) -> Array:
