@@ -190,6 +190,16 @@ impl Lane for Counted {
 
     const SAMPLES: usize = 1;
 
+    type Few = Self;
+
+    fn few(&self, _number: usize) -> Self {
+        *self
+    }
+
+    fn put_few(&mut self, _number: usize, numbers: Self) {
+        *self = numbers;
+    }
+
     fn splat(value: f64) -> Self {
         Counted(value)
     }

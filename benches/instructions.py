@@ -17,6 +17,7 @@ import tempfile
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 ROOT = Path(__file__).resolve().parent.parent
 BASELINE = ROOT / "benches" / "instructions.toml"
@@ -30,16 +31,27 @@ TOLERANCE = 0.03
 
 @dataclass(frozen=True)
 class Case:
-    """What to run: the name the program knows it by, and how many blocks."""
+    """What to run: the name the program knows it by, how many blocks, and whether by stages too."""
 
     id: str
     argument: str
     blocks: int
+    stages: bool = False
 
 
-CASES = (
-    Case("ensemble/kishan_1973/modes=3/baseline", "baseline", 2),
-    Case("ensemble/kishan_1973/modes=3/avx2", "avx2", 2),
+# The stages of a crossing side by side with others, by the functions that take them.
+STAGES: Final = {
+    "draw_roads": "roads",
+    "step_ahead": "approach",
+    "step_on_bridge": "bridge",
+    "take_in": "ends",
+    "survey": "survey",
+}
+ROOM: Final = "spanwise::ensemble::group::"
+
+CASES: Final = (
+    Case("ensemble/kishan_1973/modes=3/baseline", "baseline", 2, stages=True),
+    Case("ensemble/kishan_1973/modes=3/avx2", "avx2", 2, stages=True),
     Case("crossing/kishan_1973/modes=3", "crossing", 4),
     Case("ensemble/kinds of one sample", "kinds", 8),
     Case("crossing/the same trucks", "loop", 8),
@@ -79,8 +91,28 @@ def compiler() -> str:
     return said.stdout.split()[1]
 
 
-def collected(binary: Path, case: Case, blocks: int) -> tuple[int, int] | None:
-    """Instructions and crossings of a whole run; None if the processor cannot."""
+def by_stage(written: str) -> dict[str, int]:
+    """Instructions of each stage, with all that it calls, from what callgrind wrote.
+
+    A function begins with ``fn=`` and its name. Lines of a place and a number are its own
+    instructions; such a line after ``calls=`` is what that call took in all.
+    """
+    counts = dict.fromkeys(STAGES.values(), 0)
+    stage = None
+    for line in written.splitlines():
+        if line.startswith("fn="):
+            _, own, name = line.partition(ROOM)
+            stage = STAGES.get(re.split(r"\W", name)[0]) if own else None
+        elif stage is not None and re.match(r"[\d+*-]", line):
+            counts[stage] += int(line.split()[-1])
+    return counts
+
+
+def collected(binary: Path, case: Case, blocks: int) -> tuple[dict[str, int], int] | None:
+    """Instructions of a whole run, by stage and in all, and its crossings.
+
+    None if the processor cannot.
+    """
     valgrind = shutil.which("valgrind")
     if valgrind is None:
         raise Unusable("valgrind is not there: install it (apt-get install valgrind)")
@@ -91,6 +123,7 @@ def collected(binary: Path, case: Case, blocks: int) -> tuple[int, int] | None:
                 valgrind,
                 "--tool=callgrind",
                 f"--callgrind-out-file={out}",
+                "--compress-strings=no",
                 str(binary),
                 case.argument,
                 str(blocks),
@@ -102,10 +135,16 @@ def collected(binary: Path, case: Case, blocks: int) -> tuple[int, int] | None:
             return None
         if run.returncode != 0:
             raise Unusable(f"{case.id} ended with {run.returncode}:\n{run.stderr[-2000:]}")
-        total = re.search(r"^(?:summary|totals):\s*(\d+)", out.read_text(), re.MULTILINE)
+        written = out.read_text()
+    total = re.search(r"^(?:summary|totals):\s*(\d+)", written, re.MULTILINE)
     if total is None:
         raise Unusable(f"{case.id}: callgrind wrote no total")
-    return int(total[1]), int(run.stdout)
+    counts = {case.id: int(total[1])}
+    if case.stages:
+        counts |= {f"{case.id}/{stage}": count for stage, count in by_stage(written).items()}
+        if 0 in counts.values():
+            raise Unusable(f"{case.id}: a stage is not among the functions of {ROOM}")
+    return counts, int(run.stdout)
 
 
 def measure() -> dict[str, int | None]:
@@ -115,10 +154,11 @@ def measure() -> dict[str, int | None]:
     for case in CASES:
         runs = [collected(binary, case, blocks) for blocks in (case.blocks, 2 * case.blocks)]
         if runs[0] is None or runs[1] is None:
-            counts[case.id] = None
+            stages = STAGES.values() if case.stages else ()
+            counts |= dict.fromkeys([case.id, *(f"{case.id}/{stage}" for stage in stages)])
             continue
         (less, few), (more, many) = runs[0], runs[1]
-        counts[case.id] = round((more - less) / (many - few))
+        counts |= {name: round((more[name] - less[name]) / (many - few)) for name in more}
     return counts
 
 

@@ -72,13 +72,24 @@ impl<L: Lane> Peaks<L> {
         self.min = value.smaller(self.min);
     }
 
-    /// Whether values within these bounds, the upper and the lower, can be new extremes in any lane, where it is known
-    /// what the extremes will reach in the end.
+    /// That of a few samples.
     #[inline(always)]
-    pub fn may_grow(&self, [high, low]: [L; 2], [most, least]: [L; 2]) -> bool {
-        let above = !(!self.max.less(high) | high.less(most));
-        let below = !(!low.less(self.min) | least.less(low));
-        L::any(above | below)
+    pub fn few(&self, number: usize) -> Peaks<L::Few> {
+        Peaks {
+            max: self.max.few(number),
+            max_at: self.max_at.few(number),
+            min: self.min.few(number),
+            min_at: self.min_at.few(number),
+        }
+    }
+
+    /// Puts that of a few samples in its place.
+    #[inline(always)]
+    pub fn put_few(&mut self, number: usize, own: Peaks<L::Few>) {
+        self.max.put_few(number, own.max);
+        self.max_at.put_few(number, own.max_at);
+        self.min.put_few(number, own.min);
+        self.min_at.put_few(number, own.min_at);
     }
 }
 
@@ -136,16 +147,16 @@ impl<L: Lane> Seen<L> {
     }
 }
 
-/// One response at a step: what the loads do is summed up by itself, so that it may be known beforehand.
+/// One response at a step, in a few samples: what the loads do is summed up by itself, so that it may be known beforehand.
 #[inline(always)]
-pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L]) -> L {
-    let mut value = L::splat(factors[0]) * row[0];
+pub fn value<L: Lane>(factors: &[f64], influence: &[f64], row: &[L], number: usize) -> L::Few {
+    let mut value = L::Few::splat(factors[0]) * row[0].few(number);
     for (factor, a) in factors[1..].iter().zip(&row[1..]) {
-        value = value + L::splat(*factor) * *a;
+        value = value + L::Few::splat(*factor) * a.few(number);
     }
-    let mut of_loads = L::splat(0.0);
+    let mut of_loads = L::Few::splat(0.0);
     for (k, (g, load)) in influence.iter().zip(&row[factors.len()..]).enumerate() {
-        let own = L::splat(*g) * *load;
+        let own = L::Few::splat(*g) * load.few(number);
         of_loads = if k == 0 { own } else { of_loads + own };
     }
     if influence.is_empty() { value } else { value + of_loads }
@@ -175,15 +186,19 @@ pub fn at_stop<L: Lane>(
     (stop, number, moment): (&Stop, usize, &PassingInfluence),
     then: &[L],
 ) {
-    let at = L::splat(number as f64);
+    let at = L::Few::splat(number as f64);
     let c = look.rows.first().map_or(0, |row| row.factors.len());
     for (&r, influence) in look.asked[stop.asked].iter().zip(moment.influence.chunks_exact(then.len() - c)) {
-        let value = value(&look.rows[r].factors, influence, then);
-        peaks[r].take(value, at);
-        if let Some((tip, sign)) = stop.tip
-            && tip == r
-        {
-            peaks[r].take(value + L::splat(sign) * then[c + stop.axle], at);
+        for number in 0..L::FEWS {
+            let value = value(&look.rows[r].factors, influence, then, number);
+            let mut own = peaks[r].few(number);
+            own.take(value, at);
+            if let Some((tip, sign)) = stop.tip
+                && tip == r
+            {
+                own.take(value + L::Few::splat(sign) * then[c + stop.axle].few(number), at);
+            }
+            peaks[r].put_few(number, own);
         }
     }
 }

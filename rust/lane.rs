@@ -31,6 +31,19 @@ pub trait Lane:
     /// Number of samples.
     const SAMPLES: usize;
 
+    /// Samples whose extremes are looked for together: eight, or one. The more there are, the more often there is one of
+    /// them for which all must be looked at; the fewer, the more work that is the same for all is done over and over.
+    type Few: Lane;
+
+    /// How many times so many there are.
+    const FEWS: usize = Self::SAMPLES / Self::Few::SAMPLES;
+
+    /// The numbers of some of them.
+    fn few(&self, number: usize) -> Self::Few;
+
+    /// Puts the numbers of some of them in their place.
+    fn put_few(&mut self, number: usize, numbers: Self::Few);
+
     /// The same number for every sample.
     fn splat(value: f64) -> Self;
 
@@ -83,6 +96,24 @@ pub trait Lane:
     fn magnitude(self) -> Self;
 }
 
+/// Numbers that are one register, or none.
+macro_rules! whole {
+    () => {
+        type Few = Self;
+
+        #[inline(always)]
+        fn few(&self, _number: usize) -> Self {
+            *self
+        }
+
+        #[inline(always)]
+        fn put_few(&mut self, _number: usize, numbers: Self) {
+            *self = numbers;
+        }
+    };
+}
+pub(crate) use whole;
+
 /// A loop that is compiled once for each instruction set.
 pub trait Work {
     /// What comes of it.
@@ -104,6 +135,8 @@ impl Lane for f64 {
     type Bits = u64;
 
     const SAMPLES: usize = 1;
+
+    whole!();
 
     fn splat(value: f64) -> Self {
         value

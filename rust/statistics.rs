@@ -65,7 +65,8 @@ impl<L: Lane> Ride<L> {
     #[inline(always)]
     pub fn take(&mut self, tape: &Tape<L>, static_loads: &[L], left: impl Fn(usize) -> f64, counted: bool) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let Some(chunk) = tape.chunks().last() else { return };
+        let Some(last) = tape.chunks().checked_sub(1) else { return };
+        let chunk = tape.chunk(last);
         self.counted += if counted { chunk.rows.len() / tape.widths.all() } else { 0 };
         let (widths, width, from) = (&tape.widths, tape.widths.all(), chunk.from);
         for (k, static_load) in static_loads.iter().enumerate() {

@@ -264,20 +264,25 @@ impl<L: Lane> Tape<L> {
         self.rows[width..][..self.steps * width].chunks_exact(width)
     }
 
-    /// Its chunks, in order.
+    /// Number of its chunks.
     #[inline(always)]
-    pub fn chunks(&self) -> impl DoubleEndedIterator<Item = Kept<'_, L>> {
+    pub fn chunks(&self) -> usize {
+        self.steps.div_ceil(CHUNK)
+    }
+
+    /// One of its chunks.
+    // By number, not one by one from an iterator: its closure would be a function of its own, without the instruction set.
+    #[inline(always)]
+    pub fn chunk(&self, chunk: usize) -> Kept<'_, L> {
         let width = self.widths.all();
-        (0..self.steps.div_ceil(CHUNK)).map(move |chunk| {
-            let from = chunk * CHUNK;
-            let count = CHUNK.min(self.steps - from);
-            Kept {
-                from: self.from + from,
-                rows: &self.rows[(from + 1) * width..][..count * width],
-                limits: &self.limits[chunk * width..][..width],
-                parts: &self.parts[chunk * PARTS * width..][..PARTS * width],
-            }
-        })
+        let from = chunk * CHUNK;
+        let count = CHUNK.min(self.steps - from);
+        Kept {
+            from: self.from + from,
+            rows: &self.rows[(from + 1) * width..][..count * width],
+            limits: &self.limits[chunk * width..][..width],
+            parts: &self.parts[chunk * PARTS * width..][..PARTS * width],
+        }
     }
 }
 

@@ -272,6 +272,35 @@ fn bits_are_exact_in_every_lane() {
     in_all_lanes!(Whole of [u64], &all, |lanes, found: Vec<Vec<u64>>| assert_eq!(found, expected, "{lanes}"));
 }
 
+/// Taken a few at a time, samples stay in their order, and go back to their places.
+#[test]
+fn a_few_at_a_time_are_all_in_order() {
+    struct Fews<'a, L>(&'a [f64], PhantomData<L>);
+
+    impl<L: Lane> Work for Fews<'_, L> {
+        type Output = Vec<f64>;
+
+        #[inline(always)]
+        fn run(self) -> Self::Output {
+            let (numbers, mut back) = (L::from_fn(|lane| self.0[lane]), L::splat(0.0));
+            let mut all = Vec::new();
+            for number in 0..L::FEWS {
+                let few = numbers.few(number);
+                all.extend((0..L::Few::SAMPLES).map(|lane| few.get(lane)));
+                back.put_few(number, few);
+            }
+            all.extend((0..L::SAMPLES).map(|lane| back.get(lane)));
+            all
+        }
+    }
+
+    let all: Vec<f64> = (1..=64_u8).map(f64::from).collect();
+    in_all_lanes!(Fews of [f64], &all, |lanes, found: Vec<f64>| {
+        let samples = found.len() / 2;
+        assert_eq!(found, [&all[..samples], &all[..samples]].concat(), "{lanes}");
+    });
+}
+
 /// That of a single number, which tests/road.rs and tests/friction.rs hold to what is known.
 fn libm_exp(x: f64) -> f64 {
     <f64 as Lane>::exp(x)

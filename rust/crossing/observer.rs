@@ -178,7 +178,7 @@ impl<'a> Observer<'a> {
         rows.influences(look.rows[row].response, places, influence);
         let states = [&then[..], &then_at_rest[..]];
         let [own, other] = [states[of], states[1 - of]];
-        let of_state = |state: &[f64]| value(&look.rows[row].factors, influence, state);
+        let of_state = |state: &[f64]| value(&look.rows[row].factors, influence, state, 0);
         match stop.and_then(|stop| stop.tip.map(|tip| (stop.axle, tip))) {
             // On the end itself, the axle adds to the shear just inside.
             Some((axle, (tip, sign))) if tip == row && of_state(own) + 0.0 != extreme => {
@@ -206,7 +206,7 @@ impl Watch for Observer<'_> {
                 history.write(step, &widths, self.factors.as_ref(), then);
                 history.places(step, rows, places);
                 rows.influences(look.response, places, influence);
-                let value = value(&look.factors, influence, then);
+                let value = value(&look.factors, influence, then, 0);
                 seen = [seen[0].max(value), seen[1].min(value)];
             }
             self.growing = Some((row, seen, history.len()));

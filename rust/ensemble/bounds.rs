@@ -10,9 +10,6 @@ use crate::extremes::{Peaks, value};
 use crate::lane::{Lane, Work};
 use crate::tape::{PART, PARTS, Tape};
 
-/// Most numbers of a step that are held beside each other where how many there are is known.
-const MOST: usize = 12;
-
 /// The search for the extremes of every response at the steps of a tape: `chunks` of the influence of the loads, none
 /// where there is no axle on the bridge. With C coordinates and A axles loops run a known number of times, and a chunk's
 /// numbers stay in registers; with no C given there can be any number of either.
@@ -40,103 +37,119 @@ impl<L: Lane, const C: usize, const A: usize> Work for Searching<'_, L, C, A> {
             _ => (C, A),
         };
         let unloaded = Chunk::default();
-        let chunk_of = |chunk: usize| chunks.map_or(&unloaded, |chunks| &chunks[chunk]);
         let (felt, width) = (c + a, tape.widths.all());
         // What the extremes must reach.
         glanced.clear();
         glanced.extend(peaks.iter().map(|seen| [seen.max, seen.min]));
-        let mut held = [L::splat(0.0); MOST];
-        for (chunk, kept) in tape.chunks().enumerate() {
+        for chunk in 0..tape.chunks() {
+            let kept = tape.chunk(chunk);
             let at = middle(kept.rows.len() / width);
-            let row = hold::<C, _>(&kept.rows[at * width..][..felt], &mut held);
-            let middles = &chunk_of(chunk).middles;
-            for (r, ([most, least], factors)) in glanced.iter_mut().zip(factors.chunks_exact(c)).enumerate() {
-                let value = value(factors, &middles[r * a..][..a], row);
-                *most = value.larger(*most);
-                *least = value.smaller(*least);
+            let row = &kept.rows[at * width..][..felt];
+            let middles = &chunks.map_or(&unloaded, |chunks| &chunks[chunk]).middles;
+            for (r, (glanced, factors)) in glanced.iter_mut().zip(factors.chunks_exact(c)).enumerate() {
+                let [most, least] = glanced;
+                for p in 0..L::FEWS {
+                    let value = value(factors, &middles[r * a..][..a], row, p);
+                    most.put_few(p, value.larger(most.few(p)));
+                    least.put_few(p, value.smaller(least.few(p)));
+                }
             }
         }
-        let mut held = [[L::splat(0.0); 2]; MOST];
-        for (chunk, kept) in tape.chunks().enumerate() {
-            let Chunk { influence, bounds, parts, .. } = chunk_of(chunk);
+        // What bounds must exceed: just less than that, or else what there is already.
+        let (part, least_part) = (L::splat(4.0 * f64::EPSILON), L::splat(f64::MIN_POSITIVE));
+        for ([most, least], seen) in glanced.iter_mut().zip(peaks.iter()) {
+            *most = (*most - (most.magnitude() * part + least_part)).larger(seen.max);
+            *least = (*least + (least.magnitude() * part + least_part)).smaller(seen.min);
+        }
+        for chunk in 0..tape.chunks() {
+            let kept = tape.chunk(chunk);
+            let Chunk { influence, bounds, parts, .. } = chunks.map_or(&unloaded, |chunks| &chunks[chunk]);
             let count = kept.rows.len() / width;
-            let ends = hold::<C, _>(&kept.limits[..felt], &mut held);
+            let ends = &kept.limits[..felt];
             let mut positive = true;
             for [_, least] in &ends[c..] {
                 positive &= !L::any(least.less(L::splat(0.0)));
             }
-            let rows = peaks.iter_mut().zip(glanced.iter()).zip(factors.chunks_exact(c));
-            for (r, ((seen, reached), factors)) in rows.enumerate() {
-                if !seen.may_grow(bound(factors, &bounds[r * a..][..a], ends, positive), *reached) {
-                    continue;
-                }
-                let influence = &influence[r * count * a..][..count * a];
-                let parts = &parts[r * PARTS * a..][..PARTS * a];
-                for part in 0..count.div_ceil(PART) {
-                    let ends = &kept.parts[part * width..][..felt];
-                    if !seen.may_grow(bound(factors, &parts[part * a..][..a], ends, positive), *reached) {
+            let rows = peaks.iter_mut().zip(glanced.iter_mut()).zip(factors.chunks_exact(c));
+            for (r, ((seen, glanced), factors)) in rows.enumerate() {
+                let bounds = &bounds[r * a..][..a];
+                for p in 0..L::FEWS {
+                    let [mut most, mut least] = [glanced[0].few(p), glanced[1].few(p)];
+                    if !exceeds(bound(factors, bounds, ends, p, positive), [most, least]) {
                         continue;
                     }
-                    let first = part * PART;
-                    let (own, at) = (&influence[first * a..], kept.from + first);
-                    look(seen, (factors, a), own, (&kept.rows[first * width..], width), at);
+                    let influence = &influence[r * count * a..][..count * a];
+                    let parts = &parts[r * PARTS * a..][..PARTS * a];
+                    let mut own = seen.few(p);
+                    for part in 0..count.div_ceil(PART) {
+                        let ends = &kept.parts[part * width..][..felt];
+                        if !exceeds(bound(factors, &parts[part * a..][..a], ends, p, positive), [most, least]) {
+                            continue;
+                        }
+                        let first = part * PART;
+                        let mut at = L::Few::splat((kept.from + first) as f64);
+                        let rows = kept.rows[first * width..].chunks_exact(width).take(PART);
+                        for (step, row) in rows.enumerate() {
+                            let influence = &influence[(first + step) * a..][..a];
+                            own.take(value(factors, influence, &row[..felt], p), at);
+                            at = at + L::Few::splat(1.0);
+                        }
+                        (most, least) = (most.larger(own.max), least.smaller(own.min));
+                    }
+                    seen.put_few(p, own);
+                    glanced[0].put_few(p, most);
+                    glanced[1].put_few(p, least);
                 }
             }
         }
     }
 }
 
-/// Some numbers, beside each other in registers if it is known how many: the compiler does not keep there what may be
-/// written to.
+/// Whether values within these bounds, the upper and the lower, can exceed the extremes so far in any sample.
 #[inline(always)]
-fn hold<'h, const C: usize, T: Copy>(numbers: &'h [T], held: &'h mut [T; MOST]) -> &'h [T] {
-    if C == 0 {
-        return numbers;
-    }
-    let held = &mut held[..numbers.len()];
-    held.copy_from_slice(numbers);
-    held
+fn exceeds<P: Lane>([high, low]: [P; 2], [most, least]: [P; 2]) -> bool {
+    P::any(most.less(high) | low.less(least))
 }
 
-/// Takes in the values of a response in the steps of a part that begins with these numbers, the first of them `from`.
+/// Bounds of a response, in a few samples, where coordinates and loads are between their `ends`, largest and
+/// smallest; whether the loads are all `positive`.
 #[inline(always)]
-fn look<L: Lane>(
-    seen: &mut Peaks<L>,
-    (factors, a): (&[f64], usize),
-    influence: &[f64],
-    (rows, width): (&[L], usize),
-    from: usize,
-) {
-    let felt = factors.len() + a;
-    let mut own = *seen;
-    let mut at = from as f64;
-    for (step, row) in rows.chunks_exact(width).take(PART).enumerate() {
-        own.take(value(factors, &influence[step * a..][..a], &row[..felt]), L::splat(at));
-        at += 1.0;
+fn bound<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], number: usize, positive: bool) -> [L::Few; 2] {
+    if positive {
+        bound_of::<L, true>(factors, bounds, ends, number)
+    } else {
+        bound_of::<L, false>(factors, bounds, ends, number)
     }
-    *seen = own;
 }
 
-/// Bounds of a response where coordinates and loads are between their `ends`, largest and smallest; whether the loads
-/// are all `positive`.
 #[inline(always)]
-fn bound<L: Lane>(factors: &[f64], bounds: &[[f64; 2]], ends: &[[L; 2]], positive: bool) -> [L; 2] {
+fn bound_of<L: Lane, const POSITIVE: bool>(
+    factors: &[f64],
+    bounds: &[[f64; 2]],
+    ends: &[[L; 2]],
+    number: usize,
+) -> [L::Few; 2] {
     let (of_coordinates, of_loads) = ends.split_at(factors.len());
-    let between = |factor: f64, [most, least]: [L; 2]| {
-        let (a, b) = (L::splat(factor) * most, L::splat(factor) * least);
-        [a.larger(b), a.smaller(b)]
-    };
-    let [mut high, mut low] = between(factors[0], of_coordinates[0]);
+    let [mut high, mut low] = between(factors[0], &of_coordinates[0], number);
     for (factor, ends) in factors[1..].iter().zip(&of_coordinates[1..]) {
-        let [most, least] = between(*factor, *ends);
+        let [most, least] = between(*factor, ends, number);
         (high, low) = (high + most, low + least);
     }
     // The loads by themselves first, as the values are summed up.
-    let mut sum = [L::splat(0.0); 2];
+    let mut sum = [L::Few::splat(0.0); 2];
     for (k, (&[from, to], ends)) in bounds.iter().zip(of_loads).enumerate() {
-        let ([most, below], [above, least]) = (between(to, *ends), between(from, *ends));
-        let [most, least] = if positive { [most, least] } else { [most.larger(above), below.smaller(least)] };
+        let ([most, below], [above, least]) = (between(to, ends, number), between(from, ends, number));
+        let [most, least] = if POSITIVE { [most, least] } else { [most.larger(above), below.smaller(least)] };
         sum = if k == 0 { [most, least] } else { [sum[0] + most, sum[1] + least] };
     }
     if bounds.is_empty() { [high, low] } else { [high + sum[0], low + sum[1]] }
+}
+
+/// Largest and smallest of a factor times what lies between these ends, largest and smallest: which of them it is follows
+/// from the sign, so that nothing is compared.
+#[inline(always)]
+fn between<L: Lane>(factor: f64, ends: &[L; 2], number: usize) -> [L::Few; 2] {
+    let negative = (factor.to_bits() >> 63) as usize;
+    let factor = L::Few::splat(factor);
+    [factor * ends[negative].few(number), factor * ends[1 - negative].few(number)]
 }

@@ -18,7 +18,7 @@ use crate::step::driving::ModalForces;
 use crate::step::forced::Forced;
 use crate::step::gait::{COULOMB, DAMPERS, Gait, SPRINGS, Standing};
 use crate::step::stepper::{State, Stepper, Unsettled};
-use crate::step::swift::{Coupling, Swift};
+use crate::step::swift::{ANY, Coupling, Swift};
 use crate::step::vibration::{Reach, Vibration};
 use crate::stop_token::StopToken;
 use crate::stops::{PassingInfluence, Positions};
@@ -139,6 +139,9 @@ pub struct Scene<'a> {
     /// Whether to look for trouble after every step and not only after every chunk.
     pub closely: bool,
 }
+
+/// Most modes whose number is known where steps are compiled.
+const MOST_MODES: usize = 6;
 
 /// Most numbers on a group's tape.
 pub const KEPT: usize = 1 << 15;
@@ -320,10 +323,12 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
     }
 }
 
-/// The same with the own steps of a gait: on K contacts, with N coordinates.
-struct Striding<'s, 'g, 'a, L, const K: usize, const N: usize, const LAW: u8>(Stepping<'s, 'g, 'a, L>);
+/// The same with the own steps of a gait: on K contacts, with N coordinates; on a bridge with M modes, or any number.
+struct Striding<'s, 'g, 'a, L, const K: usize, const N: usize, const LAW: u8, const M: usize>(Stepping<'s, 'g, 'a, L>);
 
-impl<L: Lane, const K: usize, const N: usize, const LAW: u8> Work for Striding<'_, '_, '_, L, K, N, LAW> {
+impl<L: Lane, const K: usize, const N: usize, const LAW: u8, const M: usize> Work
+    for Striding<'_, '_, '_, L, K, N, LAW, M>
+{
     type Output = Result<(), Trouble>;
 
     #[inline(always)]
@@ -336,18 +341,28 @@ impl<L: Lane, const K: usize, const N: usize, const LAW: u8> Work for Striding<'
         let stepper = if approach { &steppers.approach } else { &steppers.bridge };
         let mut swift = Swift::<L, K, N, LAW>::new(stepper, state, geometry.speed);
         let alone = Coupling::alone(&steppers.approach);
-        let modes = &mut state.modes[..];
+        // Where their number is known they stay where the compiler can see them.
+        let mut own = [Coordinate::rest(); MOST_MODES];
+        let modes = if M == ANY {
+            &mut state.modes[..]
+        } else {
+            own[..M].copy_from_slice(&state.modes[..M]);
+            &mut own[..M]
+        };
         let rows = tape.rows_mut(steps.clone()).chunks_exact_mut(widths.all());
         for (step, row) in steps.clone().zip(rows) {
             if step > 0 {
                 let interaction = if approach { None } else { geometry.interaction_at(step) };
                 let under = geometry.under(step, LAW == DAMPERS);
-                if !swift.step(modes, interaction.unwrap_or_default(), &alone, under) {
+                if !swift.step::<M>(modes, interaction.unwrap_or_default(), &alone, under) {
                     return Err(Trouble::Failed(step, Some(Unsettled::ContactForces)));
                 }
             }
             keep(row, &widths, modes, bridge.as_ref(), (static_loads, &swift.increments));
             keep_accelerations(&mut row[widths.accelerations()..], bodies, &swift.coordinates);
+        }
+        if M != ANY {
+            state.modes[..M].copy_from_slice(&own[..M]);
         }
         swift.end(state);
         geometry.go_to(steps.end - 1);
@@ -372,29 +387,32 @@ impl<L: Lanes> Stepping<'_, '_, '_, L> {
         let gait = stepper.gait().filter(|_| known && !self.scene.closely);
         // Debug builds know none: they change no bit and take most of the time to compile.
         macro_rules! gaits {
-            ($(($law:ident $number:ident $contacts:literal $coordinates:literal)),*) => {
-                match gait {
-                    $(Some(Gait { contacts: $contacts, coordinates: $coordinates, law: Standing::$law })
+            ($(($law:ident $number:ident $contacts:literal $coordinates:literal $modes:pat => $known:expr)),*) => {
+                match (gait, self.traveller.state.modes.len()) {
+                    $((Some(Gait { contacts: $contacts, coordinates: $coordinates, law: Standing::$law }), $modes)
                         if !cfg!(debug_assertions) =>
                     {
-                        L::dispatch(Striding::<L, $contacts, $coordinates, $number>(self))
+                        L::dispatch(Striding::<L, $contacts, $coordinates, $number, $known>(self))
                     })*
                     _ => L::dispatch(self),
                 }
             };
         }
         gaits!(
-            (Coulomb COULOMB 2 2),
-            (Coulomb COULOMB 3 2),
-            (Coulomb COULOMB 4 2),
-            (Coulomb COULOMB 5 2),
-            (Springs SPRINGS 1 2),
-            (Springs SPRINGS 2 4),
-            (Springs SPRINGS 3 6),
-            (Springs SPRINGS 5 8),
-            (Dampers DAMPERS 2 4),
-            (Dampers DAMPERS 3 6),
-            (Dampers DAMPERS 5 8)
+            (Coulomb COULOMB 2 2 0 => 0),
+            (Coulomb COULOMB 2 2 3 => 3),
+            (Coulomb COULOMB 2 2 6 => 6),
+            (Coulomb COULOMB 2 2 _ => ANY),
+            (Coulomb COULOMB 3 2 _ => ANY),
+            (Coulomb COULOMB 4 2 _ => ANY),
+            (Coulomb COULOMB 5 2 _ => ANY),
+            (Springs SPRINGS 1 2 _ => ANY),
+            (Springs SPRINGS 2 4 _ => ANY),
+            (Springs SPRINGS 3 6 _ => ANY),
+            (Springs SPRINGS 5 8 _ => ANY),
+            (Dampers DAMPERS 2 4 _ => ANY),
+            (Dampers DAMPERS 3 6 _ => ANY),
+            (Dampers DAMPERS 5 8 _ => ANY)
         )
     }
 }
@@ -550,8 +568,37 @@ impl<L: Lane> Work for TakingIn<'_, L> {
     }
 }
 
+// The stages of a crossing, in functions of their own: by their names `benches/instructions.py` counts them one by one.
+
+/// Draws the roads of a group.
+#[inline(never)]
+pub fn draw_roads<L: Lanes, F: Fn(usize) -> u64>(drawing: Drawing<'_, L, F>) {
+    L::dispatch(drawing);
+}
+
+/// Takes the steps before the bridge.
+#[inline(never)]
+fn step_ahead<L: Lanes>(mut stepping: Stepping<'_, '_, '_, L>) -> Result<(), Trouble> {
+    // It is so anyway; said here, the function is not the next one, which the compiler would put in its place.
+    stepping.place = Where::Approach;
+    stepping.go()
+}
+
+/// Takes the steps on the bridge, or behind it.
+#[inline(never)]
+fn step_on_bridge<L: Lanes>(stepping: Stepping<'_, '_, '_, L>) -> Result<(), Trouble> {
+    stepping.go()
+}
+
+/// Takes in a chunk.
+#[inline(never)]
+fn take_in<L: Lanes>(taking_in: TakingIn<'_, L>) {
+    L::dispatch(taking_in);
+}
+
 /// Looks at the responses at the steps of a tape, with axles on the bridge or not.
-fn look_at_steps<L: Lanes>(
+#[inline(never)]
+fn survey<L: Lanes>(
     scene: &Scene<'_>,
     peaks: &mut [Peaks<L>],
     tape: &Tape<L>,
@@ -642,7 +689,8 @@ pub fn cross_group<'a, L: Lanes>(
             let (traveller, steps) = (&mut traveller, with_vehicle);
             match engine {
                 Engine::Coupled(steppers, geometry) => {
-                    Stepping { traveller, steppers, geometry, scene, tape, place, steps, stop }.go()?;
+                    let stepping = Stepping { traveller, steppers, geometry, scene, tape, place, steps, stop };
+                    if place == Where::Approach { step_ahead(stepping)? } else { step_on_bridge(stepping)? }
                 }
                 Engine::Driven(forced, loads) => {
                     L::dispatch(Driving { traveller, forced, loads, table, tape, place, steps })?;
@@ -667,12 +715,12 @@ pub fn cross_group<'a, L: Lanes>(
             between,
             influence,
         };
-        L::dispatch(taking_in);
+        take_in(taking_in);
         if to == end || tape.steps == most * CHUNK {
             // On the approach the bridge is at rest.
             if place != Where::Approach {
                 let loaded = place == Where::Bridge;
-                look_at_steps(scene, &mut found.seen.steps, tape, loaded, (glanced, own_chunks));
+                survey(scene, &mut found.seen.steps, tape, loaded, (glanced, own_chunks));
             }
             tape.go_on();
             if to == steps + 1 || place == Where::Tail && traveller.group.ends.free {
@@ -752,7 +800,7 @@ pub fn rest<L: Lanes>(scene: &Scene<'_>, loads: &[L]) -> Seen<L> {
         let end = (start + longest * CHUNK).min(table.path.steps + 1);
         tape.begin(widths, start, (end - start).div_ceil(CHUNK));
         L::dispatch(Resting { scene, loads, steps: start..end, tape: &mut tape });
-        look_at_steps(scene, &mut seen.steps, &tape, true, (&mut glanced, &mut own_chunks));
+        survey(scene, &mut seen.steps, &tape, true, (&mut glanced, &mut own_chunks));
     }
     let mut own_moment = PassingInfluence::default();
     let mut then = vec![L::splat(0.0); widths.used()];

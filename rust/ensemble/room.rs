@@ -4,7 +4,7 @@ use super::clock::Pace;
 use super::group::KEPT;
 use super::sample::Samples;
 use super::study::{March, Study};
-use super::table::{Below, READY};
+use super::table::{Below, Ground, READY};
 use super::tabulated::MOST_INTERACTIONS;
 use super::workers::Workers;
 use crate::error::Error;
@@ -91,7 +91,7 @@ impl<'a> Room<'a> {
         let kinds = if contacts.iter().all(|contact| contact.law.is_plain()) { 1 } else { 3 };
         let (driven, together) = (study.is_driven(kind), laid_out && self.is_together(kind));
         let shapes = size_of::<f64>() * study.analysis.model.omega.len() * kinds;
-        let felt = if driven { 0 } else { size_of::<Below>() + shapes };
+        let felt = if driven { 0 } else { size_of::<Below>() + size_of::<Ground>() + shapes };
         let place = if together { 0 } else { size_of::<Place>() };
         let [of_step, of_load] = Drive::bytes(&study.analysis.model.shapes);
         let driving = if together { steps * of_step + axles * of_load } else { 0.0 };

@@ -1,7 +1,7 @@
 //! Samples that share the geometry: made ready lane by lane, marched side by side, written down one by one.
 
 use super::group::{
-    Drawing, Ends, Engine, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, rest,
+    Drawing, Ends, Engine, Found, Group, Growing, Scene, Scratch, Steppers, Trouble, cross_group, draw_roads, rest,
 };
 use super::results::{Column, Failure, Format, Record, encoded};
 use super::sample::Samples;
@@ -318,7 +318,7 @@ impl Task<'_> {
         let engine = engine.get_or_insert_with(|| Moves::gather(ready_of));
         if let Some((synthesis, seed)) = study.own.as_ref().filter(|_| table.drive.is_none()) {
             let sample = |lane: usize| samples.first + sample_of(lane) as u64;
-            L::dispatch(Drawing { synthesis, seed: *seed, sample, road: roads });
+            draw_roads(Drawing { synthesis, seed: *seed, sample, road: roads });
         }
         let ended = |lane: usize| match study.settings.tail {
             Tail::Fixed(tail) => {

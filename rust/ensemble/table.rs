@@ -56,6 +56,34 @@ pub enum Below {
     },
 }
 
+/// The same for steps that ask for nothing but the elevation, in a third of the memory: a step is short, and reads it anew
+/// for every group.
+#[derive(Debug, Clone, Copy)]
+pub struct Ground {
+    /// Number of the first coefficient that counts.
+    pub first: usize,
+    /// How much of the whole there is.
+    pub share: f64,
+    /// Elevation of what all share [m].
+    pub given: f64,
+    /// Weights of the coefficients.
+    pub weights: [f64; 4],
+}
+
+impl Ground {
+    fn of(below: &Below) -> Self {
+        let level = |given: f64| Ground { first: 0, share: 1.0, given, weights: [0.0; 4] };
+        match *below {
+            Below::Given(surface) => level(surface.elevation),
+            Below::Own { share: Share::Level, .. } => level(0.0),
+            Below::Own { given, taps, share } => {
+                let share = if let Share::Faded([fade, ..]) = share { fade } else { 1.0 };
+                Ground { first: taps.first, share, given: given[0], weights: taps.weights[0] }
+            }
+        }
+    }
+}
+
 /// The shared geometry.
 #[derive(Debug, Clone)]
 pub struct Table {
@@ -67,6 +95,8 @@ pub struct Table {
     places: Vec<Place>,
     /// What lies below them.
     pub below: Vec<Below>,
+    /// The same in short, if steps ask for no more.
+    pub grounds: Vec<Ground>,
     /// Φ⁰ and, if the step asks for them, its first two derivatives, by step, axle and mode.
     pub shapes: Vec<f64>,
     /// Derivatives held, the value included.
@@ -157,6 +187,7 @@ impl Table {
             modes: shapes.modes(),
             places: Vec::with_capacity((steps + path.beyond + 1) * kept),
             below: Vec::with_capacity((steps + path.beyond + 1) * felt),
+            grounds: Vec::new(),
             shapes: Vec::with_capacity((steps + path.beyond + 1) * felt * shapes.modes() * kinds),
             kinds,
             first: steps,
@@ -193,6 +224,9 @@ impl Table {
                 }
             }
             stop.check()?;
+        }
+        if matches!(feeling, Feeling::Below(ground, false) if ground.own.is_some()) {
+            table.grounds = table.below.iter().map(Ground::of).collect();
         }
         let marks: Vec<f64> = look.marks.iter().map(|mark| mark.x).collect();
         table.stops = passings(&table.path, &marks).iter().flat_map(|passing| passing.stops(look, true)).collect();

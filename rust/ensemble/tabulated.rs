@@ -134,6 +134,13 @@ impl<'a, L: Lane> Tabulated<'a, L> {
     pub fn under<const K: usize>(&self, step: usize, slopes: bool) -> [Under<L>; K] {
         let row = step.min(self.table.last());
         let mut under = [Under { elevation: L::splat(0.0), slope: L::splat(0.0) }; K];
+        if !slopes && let Some(grounds) = self.table.grounds.get(row * K..(row + 1) * K) {
+            for (under, ground) in under.iter_mut().zip(grounds) {
+                let own = weighted(ground.weights, near(self.road, ground.first));
+                under.elevation = L::splat(ground.share) * (L::splat(ground.given) + own);
+            }
+            return under;
+        }
         for (under, below) in under.iter_mut().zip(&self.table.below[row * K..][..K]) {
             *under = below.under(self.road, slopes);
         }

@@ -10,7 +10,19 @@ use super::bits::Bits;
 
 /// The numbers of R registers.
 #[derive(Debug, Clone, Copy)]
-pub struct Pack<L, const R: usize>([L; R]);
+pub struct Pack<L, const R: usize>(pub(super) [L; R]);
+
+/// A register of which R are a pack.
+pub trait Together<const R: usize>: Lane {
+    /// See [`Lane::Few`].
+    type Some: Lane;
+
+    /// See [`Lane::few`].
+    fn some(registers: &[Self; R], number: usize) -> Self::Some;
+
+    /// See [`Lane::put_few`].
+    fn put_some(registers: &mut [Self; R], number: usize, numbers: Self::Some);
+}
 
 /// Which of their samples.
 #[derive(Debug, Clone, Copy)]
@@ -85,12 +97,24 @@ impl<M: Copy + Not<Output = M>, const R: usize> Not for PackMask<M, R> {
     each!(alone not);
 }
 
-impl<L: Lane, const R: usize> Lane for Pack<L, R> {
+impl<L: Together<R>, const R: usize> Lane for Pack<L, R> {
     type Mask = PackMask<L::Mask, R>;
 
     type Bits = PackBits<L::Bits, R>;
 
     const SAMPLES: usize = L::SAMPLES * R;
+
+    type Few = L::Some;
+
+    #[inline(always)]
+    fn few(&self, number: usize) -> L::Some {
+        L::some(&self.0, number)
+    }
+
+    #[inline(always)]
+    fn put_few(&mut self, number: usize, numbers: L::Some) {
+        L::put_some(&mut self.0, number, numbers);
+    }
 
     each!(larger, smaller);
     each!(alone exp, magnitude);

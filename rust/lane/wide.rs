@@ -6,7 +6,7 @@
 use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::bits::Bits;
-use super::{Lane, Lanes, Work};
+use super::{Lane, Lanes, Work, whole};
 
 /// One number for each of N samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,6 +88,8 @@ impl<const N: usize> Lane for Wide<N> {
     type Bits = WideBits<N>;
 
     const SAMPLES: usize = N;
+
+    whole!();
 
     #[inline(always)]
     fn splat(value: f64) -> Self {

@@ -16,14 +16,14 @@ use std::ops::{Add, BitOr, Div, Mul, Neg, Not, Sub};
 use pulp::NullaryFnOnce;
 
 use super::bits::Bits;
-use super::pack::Pack;
-use super::{Lane, Lanes, Work};
+use super::pack::{Pack, Together};
+use super::{Lane, Lanes, Work, whole};
 
 /// Eight numbers in two registers of AVX2.
 pub type Avx2 = Pack<Four, 2>;
 
-/// Eight numbers in one register of AVX-512.
-pub type Avx512 = Eight;
+/// Sixteen numbers in two registers of AVX-512: what is done to one of them hides how long the other takes.
+pub type Avx512 = Pack<Eight, 2>;
 
 /// An instruction that takes and returns numbers.
 macro_rules! on {
@@ -101,6 +101,8 @@ macro_rules! register {
             type Bits = $bits;
 
             const SAMPLES: usize = $samples;
+
+            whole!();
 
             #[inline(always)]
             fn splat(value: f64) -> Self {
@@ -260,6 +262,34 @@ register! {
     |a: __mmask8, b: __mmask8| a | b,
     |a: __mmask8| !a,
     |a: __mmask8| a != 0
+}
+
+impl<const R: usize> Together<R> for Four {
+    type Some = Pack<Four, R>;
+
+    #[inline(always)]
+    fn some(registers: &[Self; R], _number: usize) -> Self::Some {
+        Pack(*registers)
+    }
+
+    #[inline(always)]
+    fn put_some(registers: &mut [Self; R], _number: usize, numbers: Self::Some) {
+        *registers = numbers.0;
+    }
+}
+
+impl<const R: usize> Together<R> for Eight {
+    type Some = Eight;
+
+    #[inline(always)]
+    fn some(registers: &[Self; R], number: usize) -> Self {
+        registers[number]
+    }
+
+    #[inline(always)]
+    fn put_some(registers: &mut [Self; R], number: usize, numbers: Self) {
+        registers[number] = numbers;
+    }
 }
 
 /// Work as pulp wants it.

@@ -27,6 +27,9 @@ pub struct Under<L> {
     pub slope: L,
 }
 
+/// Any number of modes.
+pub const ANY: usize = usize::MAX;
+
 /// The state of a vehicle with what its steps need, on K contacts and with N coordinates.
 pub struct Swift<'s, L, const K: usize, const N: usize, const LAW: u8> {
     newmark: Newmark<L>,
@@ -149,9 +152,9 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
 
     /// Advances the modes and the vehicle by one step, with the interaction where it ends, mode by mode and then what is
     /// of all, and what lies under each contact; how contacts feel each other `alone` counts where there is no bridge. Says
-    /// whether the forces were found.
+    /// whether the forces were found. There are M modes, or [`ANY`] number.
     #[inline(always)]
-    pub fn step(
+    pub fn step<const M: usize>(
         &mut self,
         modes: &mut [Coordinate<L>],
         interaction: &[f64],
@@ -161,11 +164,15 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
         let zero = L::splat(0.0);
         let newmark = self.newmark;
         // The vehicle without the increments of the forces.
-        let ahead = self.coordinates.map(|c| newmark.predict(c));
+        let mut ahead = self.coordinates;
+        for coordinate in &mut ahead {
+            *coordinate = newmark.predict(*coordinate);
+        }
         let mut free = [zero; N];
         let mut unloaded = ahead;
         if LAW != COULOMB {
-            let [damping, stiffness, inverse] = self.linear.map(|matrix| &matrix[..N * N]);
+            let [damping, stiffness, inverse] = self.linear;
+            let (damping, stiffness, inverse) = (&damping[..N * N], &stiffness[..N * N], &inverse[..N * N]);
             let mut resisting = [zero; N];
             for i in 0..N {
                 for j in 0..N {
@@ -181,14 +188,19 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
             }
         }
         // The modes under the static loads, and what they leave of the gaps.
-        let mut gaps = under.map(|under| under.elevation);
+        let mut gaps = [zero; K];
+        for k in 0..K {
+            gaps[k] = under[k].elevation;
+        }
         if LAW == DAMPERS {
             for k in 0..K {
                 gaps[k] = gaps[k] + self.rates[k] * self.speed * under[k].slope;
             }
         }
-        let (each, count) = (of_mode(K, LAW), modes.len());
-        let [omega2, damping, inverse] = self.modal.map(|numbers| &numbers[..count]);
+        let (each, count) = (of_mode(K, LAW), if M == ANY { modes.len() } else { M });
+        let modes = &mut modes[..count];
+        let [omega2, damping, inverse] = self.modal;
+        let (omega2, damping, inverse) = (&omega2[..count], &damping[..count], &inverse[..count]);
         let (of_modes, of_all) = interaction.split_at(if count == 0 { 0 } else { each * count });
         for ((m, mode), of) in modes.iter_mut().enumerate().zip(of_modes.chunks_exact(each)) {
             let predicted = newmark.predict(*mode);
@@ -244,7 +256,7 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
     #[inline(always)]
     fn solve(&mut self, coupling: &Coupling<L, K>, gaps: [L; K]) -> Option<[L; K]> {
         let zero = L::splat(0.0);
-        let Coupling { compliance, held } = coupling;
+        let held = &coupling.held;
         let (mut stuck, mut beside) = ([zero; K], [zero; K]);
         for k in 0..K {
             if LAW == COULOMB {
@@ -253,48 +265,74 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
                 beside[k] = slider.initial - slider.stiffness * self.shortenings[k];
             }
         }
-        let slip = |trial: L, limit: L| trial.smaller(limit).larger(-limit);
         let mut p = self.increments;
-        let mut done = L::never();
-        for sweep in 0..SWEEPS {
-            let mut left = zero;
-            for k in 0..K {
-                let mut others = gaps[k];
-                for j in 0..K {
-                    if j != k {
-                        others = others - compliance[k][j] * p[j];
-                    }
+        let mut done = self.sweep(coupling, &gaps, (&stuck, &beside), None, &mut p);
+        if K > 1 {
+            // The second sweep comes without asking whether the first was enough, as it hardly ever is: in lanes that are
+            // done it changes nothing.
+            done = self.sweep(coupling, &gaps, (&stuck, &beside), Some(done), &mut p);
+            for _ in 2..SWEEPS {
+                if L::all(done) {
+                    break;
                 }
-                let mut found = held[k].gain * others;
-                if LAW == COULOMB {
-                    let slider = &self.sliders[k];
-                    found = found + stuck[k];
-                    let trial = found + beside[k];
-                    found = found - held[k].share * (trial - slip(trial, slider.limit));
-                }
-                found = self.floors[k].larger(found);
-                if sweep > 0 {
-                    found = L::select(done, p[k], found);
-                }
-                if k > 0 {
-                    left = left + held[k].reach * (found - p[k]).magnitude();
-                }
-                p[k] = found;
+                done = self.sweep(coupling, &gaps, (&stuck, &beside), Some(done), &mut p);
             }
-            done = done | left.less(self.tolerance);
-            if K <= 1 || L::all(done) {
-                for k in 0..K {
-                    if LAW == COULOMB {
-                        let slider = &self.sliders[k];
-                        let trial = p[k] + beside[k];
-                        let friction = slip(trial, slider.limit);
-                        self.shortenings[k] = self.shortenings[k] + (trial - friction) * slider.give;
-                        self.frictions[k] = friction;
-                    }
-                }
-                return Some(p);
+            if !L::all(done) {
+                return None;
             }
         }
-        None
+        for k in 0..K {
+            if LAW == COULOMB {
+                let slider = &self.sliders[k];
+                let trial = p[k] + beside[k];
+                let friction = slip(trial, slider.limit);
+                self.shortenings[k] = self.shortenings[k] + (trial - friction) * slider.give;
+                self.frictions[k] = friction;
+            }
+        }
+        Some(p)
     }
+
+    /// Goes once through the increments `p`, in lanes that are not `done` yet; says which are then.
+    #[inline(always)]
+    fn sweep(
+        &self,
+        Coupling { compliance, held }: &Coupling<L, K>,
+        gaps: &[L; K],
+        (stuck, beside): (&[L; K], &[L; K]),
+        done: Option<L::Mask>,
+        p: &mut [L; K],
+    ) -> L::Mask {
+        let mut left = L::splat(0.0);
+        for k in 0..K {
+            let mut others = gaps[k];
+            for j in 0..K {
+                if j != k {
+                    others = others - compliance[k][j] * p[j];
+                }
+            }
+            let mut found = held[k].gain * others;
+            if LAW == COULOMB {
+                found = found + stuck[k];
+                let trial = found + beside[k];
+                found = found - held[k].share * (trial - slip(trial, self.sliders[k].limit));
+            }
+            found = self.floors[k].larger(found);
+            if let Some(done) = done {
+                found = L::select(done, p[k], found);
+            }
+            if k > 0 {
+                left = left + held[k].reach * (found - p[k]).magnitude();
+            }
+            p[k] = found;
+        }
+        let settled = left.less(self.tolerance);
+        done.map_or(settled, |done| done | settled)
+    }
+}
+
+/// Friction of a suspension that would carry so much if it did not slip.
+#[inline(always)]
+fn slip<L: Lane>(trial: L, limit: L) -> L {
+    trial.smaller(limit).larger(-limit)
 }
