@@ -164,9 +164,9 @@ impl<'s, L: Lane, const K: usize, const N: usize, const LAW: u8> Swift<'s, L, K,
         let zero = L::splat(0.0);
         let newmark = self.newmark;
         // The vehicle without the increments of the forces.
-        let mut ahead = self.coordinates;
-        for coordinate in &mut ahead {
-            *coordinate = newmark.predict(*coordinate);
+        let mut ahead = [Coordinate::rest(); N];
+        for i in 0..N {
+            ahead[i] = newmark.predict(self.coordinates[i]);
         }
         let mut free = [zero; N];
         let mut unloaded = ahead;
