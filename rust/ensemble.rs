@@ -4,18 +4,22 @@
 //! prescribed motion in equal steps of space, where the axles are and what their loads do to the bridge is the same for
 //! every sample, whatever its speed, its road or its springs: one [`table`] of a [`path`] serves all, and they march
 //! [`side_by_side`], [`tabulated`] their axles by it, in [`group`]s of lanes; constant loads are there as one, their
-//! [`resultant`]. Samples whose motion is their own take the same step one by one ([`single`]). Either way they cross with
-//! their own vehicles and bridge where these are [`varied`]. Their steps are searched for the extremes of the responses by
-//! their [`bounds`], and what is found becomes the [`results`] of a [`run`] by its [`workers`]. Of the tables, which go on
+//! [`resultant`]. Samples whose motion is their own, and those of kinds with few of them, go their [`own_ways`]: their axles
+//! [`apart`], they march [`abreast`] all the same. What rolls freely crosses by itself ([`single`]). All cross with
+//! their own vehicles and bridge where these are [`varied`]. Steps are searched for the extremes of the responses by their
+//! [`bounds`], and what is found becomes the [`results`] of a [`run`] by its [`workers`]. Of the tables, which go on
 //! a [`shelf`] as far as there is [`room`], the [`clock`] stays.
 //!
 //! A sample's result is a function of the study, the seed and its own number, to the bit: not of the number of threads, of
 //! the width of the vectors, or of its neighbours.
 
+pub(crate) mod abreast;
+pub(crate) mod apart;
 pub(crate) mod bounds;
 pub(crate) mod checks;
 pub(crate) mod clock;
 pub(crate) mod group;
+pub(crate) mod own_ways;
 pub(crate) mod path;
 pub(crate) mod resultant;
 pub(crate) mod results;

@@ -16,8 +16,8 @@
 //! row each ([`recovery`]), R = ρ·A + Σ g(x) P.
 //!
 //! Responses that are looked at ([`selection`]) are searched for their [`extremes`] at every step and at the [`stops`]
-//! between steps, when an axle stands on a section or an end. Many samples keep their steps on a [`tape`] for that, a
-//! single crossing in its history. [`statistics`] tell of axle loads, wheels off the road and accelerations of the bodies.
+//! between steps, when an axle stands on a section or an end. Many samples keep their steps on a [`tape`] for that, which a
+//! [`survey`] looks through, a single crossing in its history. [`statistics`] tell of axle loads, wheels off the road and accelerations of the bodies.
 //! A [`crossing`] goes through time step by step, its tail included, and an [`ensemble`] is many of them, each the same to
 //! the bit as alone.
 //!
@@ -117,6 +117,8 @@ pub mod selection;
 pub mod stops;
 
 pub mod extremes;
+
+pub mod survey;
 
 pub mod statistics;
 

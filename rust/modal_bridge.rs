@@ -125,6 +125,11 @@ impl ModeShapes {
         }
     }
 
+    /// The cubics of all modes on a panel.
+    pub fn cubics(&self, panel: usize) -> &[[f64; 4]] {
+        &self.cubics[panel * self.modes..(panel + 1) * self.modes]
+    }
+
     fn value(&self, panel: usize, fraction: f64, mode: usize) -> f64 {
         value(self.cubics[panel * self.modes + mode], fraction)
     }

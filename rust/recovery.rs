@@ -239,6 +239,18 @@ impl Rows {
         value([c0[i], c1[i], c2[i], c3[i]], f)
     }
 
+    /// The influence line of a response on a panel, or that of the load as it stands, with what it makes of Ā.
+    pub fn cubic_of(&self, response: usize, panel: usize, at_rest: bool) -> [f64; 4] {
+        let cubics = &self.lines[panel * self.blocks() + response / WIDTH];
+        let mut cubic = [0, 1, 2, 3].map(|power| cubics[power][response % WIDTH]);
+        for (i, shape) in self.static_shapes.iter().enumerate().filter(|_| at_rest) {
+            for (own, c) in cubic.iter_mut().zip(shape.cubics()[panel]) {
+                *own += self.factor(response, i) * c;
+            }
+        }
+        cubic
+    }
+
     /// First and second derivative along the path of the influence of an axle load on a response [1/m, 1/m²].
     pub fn derivatives_of(&self, response: usize, (panel, f): (usize, f64)) -> [f64; 2] {
         let cubics = &self.lines[panel * self.blocks() + response / WIDTH];
@@ -300,6 +312,12 @@ impl Rows {
     /// Panel and fraction of a position [m].
     pub fn place(&self, x: f64) -> Place {
         self.mesh.panel_at(x).map(|panel| (panel, self.mesh.fraction(panel, x)))
+    }
+
+    /// What the responses of a block multiply the coordinates by.
+    #[inline(always)]
+    pub fn factors_of_block(&self, b: usize) -> &[Block] {
+        &self.factors[b * self.width..(b + 1) * self.width]
     }
 
     /// The rows of one block.

@@ -11,7 +11,7 @@ use spanwise::bridge::Bridge;
 use spanwise::damping::{Damping, ModalDamping};
 use spanwise::ensemble::{BLOCK, Column, Factors, Parameter, Samples, Study};
 use spanwise::lane::Isa;
-use spanwise::passage::{Passage, Settings, Tail};
+use spanwise::passage::{Direction, Drive, Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
 use spanwise::step::{Moving, Propulsion, Scheme, Stepper};
 use spanwise::vehicle::{Axle, Friction, Vehicle, catalogue};
@@ -68,8 +68,8 @@ fn kinds_of_few_samples_are_as_good_as_kinds_of_many() {
         let analysis = kishan_analysis(9, Recovery::ForceSummation);
         let study = study_of(analysis, kinds, settings, Some((synthesis(), SEED)), Some(0.1), &ALL).unwrap();
         assert!(study.shares);
-        // Six of each kind, of which any that follow each other are few.
-        let count = 6 * number;
+        // Ten of each kind, of which any that follow each other are few.
+        let count = 10 * number;
         let kinds = (0..count).map(|i| (i % number) as u32).collect();
         let samples = Samples { kinds, ..Samples::at_speed(3, count, 21.0) };
         let many = run(&study, &samples, Isa::chosen().unwrap(), 2);
@@ -320,6 +320,40 @@ fn several_vehicles_are_a_crossing_each() {
     let values = column(&found.results, 1, Column::Responses);
     for (place, &r) in study.look.chosen.iter().enumerate() {
         assert_eq!(values[place], one.envelope.dynamic.max[r].value);
+    }
+}
+
+/// The same vehicles, some of which stand on the bridge as a crossing starts and some of which come later, slow down, or
+/// are abreast of each other: those of one make go side by side.
+#[test]
+fn vehicles_of_one_make_are_a_crossing_each() {
+    let analysis = kishan_analysis(9, Recovery::ForceSummation);
+    let event = |entries: [f64; 2], direction: Direction, drive: Drive| {
+        let first = Passage { entry: entries[0], ..Passage::of(half_car([700.0, 1100.0], 1.0, 0.0, Friction::NONE)) };
+        let second = Passage { entry: entries[1], lane: 1, direction, drive: Some(drive), ..first.clone() };
+        vec![first, second]
+    };
+    let steady = || Drive::ConstantSpeed;
+    let kinds = vec![
+        event([0.0, 1.0], Direction::Left, steady()),
+        event([0.5, 1.5], Direction::Left, steady()),
+        event([0.0, 0.0], Direction::Right, steady()),
+        event([0.0, 0.3], Direction::Left, Drive::Acceleration(-0.5)),
+        event([0.2, 0.0], Direction::Left, Drive::Acceleration(-15.0)),
+    ];
+    let number = kinds.len();
+    for (before, tail) in [(0.0, Tail::Free), (0.0, Tail::Fixed(0.0)), (12.0, Tail::Fixed(0.3))] {
+        let settings = Settings { approach: before, ramp: 0.5 * before, tail, step: Some(2e-3), ..approach() };
+        let study =
+            study_of(Arc::clone(&analysis), kinds.clone(), settings, Some((synthesis(), SEED)), None, &ALL).unwrap();
+        let count = 9 * number;
+        let samples = Samples {
+            kinds: (0..count).map(|i| (i % number) as u32).collect(),
+            speeds: (0..count).map(|i| 18.0 + 8.0 * spread(i)).collect(),
+            ..Samples::at_speed(3, count, SPEED)
+        };
+        check_ways(&study, &samples, &[0, 1, 4]);
+        check_own_ways(&study, &samples, &run(&study, &samples, Isa::chosen().unwrap(), 2), "one make");
     }
 }
 

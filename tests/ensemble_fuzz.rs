@@ -14,9 +14,9 @@ use spanwise::damping::Damping;
 use spanwise::ensemble::{Column, Factors, Parameter, Samples, decoded};
 use spanwise::extremes::Instant;
 use spanwise::lane::Isa;
-use spanwise::passage::{Passage, Settings, Tail};
+use spanwise::passage::{Direction, Drive, Passage, Settings, Tail};
 use spanwise::recovery::Recovery;
-use spanwise::road::Road;
+use spanwise::road::{Patch, Road, Spectrum, Synthesis};
 use spanwise::statics::Quantity;
 use spanwise::vehicle::{Axle, Friction, Vehicle};
 
@@ -267,4 +267,81 @@ fn random_studies() {
 fn many_random_studies() {
     let cases = std::env::var("SPANWISE_SOAK_CASES").map_or(20_000, |cases| cases.parse().unwrap());
     check_cases(cases, RngSeed::Random);
+}
+
+/// An event of up to three vehicles, each with a direction, an entry, a drive and perhaps a lane with others.
+fn event(vehicles: &[Vehicle], salt: usize, length: f64) -> Vec<Passage> {
+    let passage = |(v, vehicle): (usize, &Vehicle)| {
+        let chance = |what: usize| spread(salt + 31 * v + 7 * what);
+        let speeds = |from: f64| Drive::Speeds { times: vec![0.0, 1.0, 2.5], speeds: vec![from, 14.0, 25.0] };
+        let drive = match (8.0 * chance(0)) as usize {
+            0 => Drive::Acceleration(1.5),
+            1 => Drive::Acceleration(-0.2),
+            2 => speeds(18.0),
+            3 => speeds(0.0),
+            4 if vehicle.assembly().mass.nrows() > 0 => Drive::ConstantTraction,
+            _ => Drive::ConstantSpeed,
+        };
+        let direction = if chance(1) < 0.5 { Direction::Left } else { Direction::Right };
+        let entry = if chance(2) < 0.4 { 0.0 } else { 3.0 * chance(3) };
+        // Those of one lane, which all go the same way, follow each other.
+        let shared = chance(4) < 0.3;
+        Passage {
+            drive: Some(drive),
+            direction: if shared { Direction::Right } else { direction },
+            entry: if shared { 0.3 * length * v as f64 } else { entry },
+            lane: if shared { 0 } else { 1 + v as i64 },
+            ..Passage::of(vehicle.clone())
+        }
+    };
+    vehicles.iter().enumerate().map(passage).collect()
+}
+
+/// Vehicles that go their own ways, in lanes of every width, in portions of every size: each sample is the crossing.
+fn check_event((case, more, salt): (Case, Vec<Vehicle>, usize)) -> Result<(), TestCaseError> {
+    let Case { bridge, vehicles, settings, own, quantities, recovery, modes, ratio, samples, .. } = case;
+    let (analysis, length) =
+        (analysis_of(&bridge, modes, &Damping::Ratios(vec![ratio]), &[], recovery), bridge.length());
+    // Speeds are those of samples, for all vehicles of an event.
+    let kinds = vec![event(&vehicles, salt, length), event(&more, salt + 1, length)];
+    let settings = Settings { step: Some(0.008), ..settings };
+    let own = own.map(|roughness| {
+        let spectrum = Spectrum::new(roughness, 2.0, [0.01, 4.0]).unwrap();
+        (Arc::new(Synthesis::new(spectrum, Patch::new(0.24).unwrap(), Some(1024.0)).unwrap()), 99)
+    });
+    let study = match study_of(analysis, kinds, settings, own, None, &quantities) {
+        Ok(study) => study,
+        Err(error) => {
+            prop_assert!(error.is_input(), "{error}");
+            return Ok(());
+        }
+    };
+    let kinds = (0..samples.count).map(|i| (i % 2) as u32).collect();
+    let samples = Samples { kinds, factors: samples.factors.into_iter().filter(|f| f.width == 1).collect(), ..samples };
+    let run = |isa, threads, chunk| {
+        study.run(&samples, &spanwise::ensemble::Workers { isa, threads, chunk: Some(chunk) }, &Default::default())
+    };
+    let Ok(found) = run(Isa::present().last().unwrap(), 2, 5) else { return Ok(()) };
+    for (isa, chunk) in Isa::present().zip([32, 3, 9, 1]) {
+        let again = run(isa, 1, chunk).unwrap();
+        prop_assert_eq!(found.results.hash(), again.results.hash());
+        prop_assert_eq!(&found.results.failures, &again.results.failures);
+    }
+    if !study.shares {
+        check_own_ways(&study, &samples, &found, "random event");
+    }
+    Ok(())
+}
+
+#[test]
+fn random_events() {
+    let config = ProptestConfig {
+        cases: 40,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(11),
+        max_shrink_iters: 100,
+        ..ProptestConfig::default()
+    };
+    let events = (any_case(), prop::collection::vec(any_vehicle(), 1..4), 0..1000_usize);
+    TestRunner::new(config).run(&events, check_event).unwrap_or_else(|failure| panic!("{failure}"));
 }

@@ -36,6 +36,7 @@ mod orders;
 mod recovery;
 mod road;
 mod settings;
+mod survey;
 mod suspension;
 mod tail;
 mod traffic;

@@ -81,7 +81,7 @@ def test_summary(found: sw.Ensemble) -> None:
     factors = found.impact_factors.sagging[:, at]
     assert float(row.split()[1]) == pytest.approx(factors.mean(), abs=1e-3)
     alone = sw.ensemble(BRIDGE, TRUCK, samples=1, speed=20.0, drive="constant-traction")
-    assert "one by one" in alone.summary()
+    assert "each on its own way" in alone.summary()
 
 
 def test_repr(found: sw.Ensemble) -> None:

@@ -228,7 +228,7 @@ def test_the_speed_of_a_case_may_be_there_for_nobody(tmp_path: Path) -> None:
         case.ensemble(samples=1, speed=20.0)
 
 
-@pytest.mark.parametrize("who", [TRUCK, LEFT], ids=["side by side", "one by one"])
+@pytest.mark.parametrize("who", [TRUCK, LEFT], ids=["shared", "own ways"])
 @pytest.mark.parametrize("asked", [{"step": 1e-9}, {"tail": 1e7}], ids=str)
 def test_what_no_sample_can_do_is_refused(who: Any, asked: dict[str, Any]) -> None:
     key = next(iter(asked))
@@ -236,7 +236,7 @@ def test_what_no_sample_can_do_is_refused(who: Any, asked: dict[str, Any]) -> No
         sw.ensemble(BRIDGE, who, samples=3, speed=[20.0, 21.0, 22.0], damping=0.02, **asked)
 
 
-@pytest.mark.parametrize("who", [TRUCK, LEFT], ids=["side by side", "one by one"])
+@pytest.mark.parametrize("who", [TRUCK, LEFT], ids=["shared", "own ways"])
 def test_where_one_sample_can_the_others_are_marked(who: Any) -> None:
     # Steps enough for one that is fast, too many for those that creep.
     speeds = [20.0, 1e-5, 1e-5]

@@ -44,7 +44,7 @@ class Rows(Value):
     sections, omega : ndarray
         Sections [m], and circular frequencies [rad/s].
     shares : bool
-        Whether the samples were marched side by side.
+        Whether the samples shared where their axles stand.
     isa, threads, elapsed
         How it was computed.
     """

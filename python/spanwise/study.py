@@ -162,11 +162,11 @@ def ensemble(
     -----
     Vehicles that cross alone, at constant speed and from the left, take equal steps in space, so
     that all samples of a kind share where axles stand and what they do to the bridge, whatever
-    their speed, road, masses and springs; they march side by side. All others are crossings of
-    their own, which takes 15 to 20 times as long for each.
+    their speed, road, masses and springs. All others go their own ways, side by side too, which
+    takes a few times as long; what rolls freely, brakes or stands on the bridge crosses by itself.
 
     There may be as many kinds of event as samples: memory is taken for the results and, on each
-    thread, for one kind at a time. A kind of a few samples takes about as long for each as `cross`.
+    thread, for one kind at a time. Kinds of few samples go side by side with others of their make.
 
     Where steps in time would not be the same for all samples, the step of each is that of the kind
     halved as often as it needs; ``run(i).settings["step"]`` tells it. The environment variable

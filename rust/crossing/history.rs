@@ -291,7 +291,7 @@ impl History {
     fn left(&self, step: usize) -> f64 {
         match step + 1 {
             next if next > self.last_on => 0.0,
-            next if next + 1 == self.len() => (self.time[next] - self.time[step]) / self.step,
+            next if next + 1 == self.len() => part(self.time[next] - self.time[step], self.step),
             _ => 1.0,
         }
     }
@@ -373,6 +373,12 @@ impl History {
             }
         }
     }
+}
+
+/// A length of time by that of a step, which it is part of, or the whole.
+pub fn part(time: f64, step: f64) -> f64 {
+    let part = time / step;
+    if part > 1.0 - 1e-9 { 1.0 } else { part }
 }
 
 impl Positions for History {

@@ -4,18 +4,18 @@ use crate::bridge::cubics::Mesh;
 use crate::coordinate::Coordinate;
 use crate::crossing::history::{History, VehicleColumns};
 use crate::crossing::tail::{self, Watch};
+use crate::crossing::trip::{Trip, overlap, passed};
 use crate::error::Error;
 use crate::geometry::free::Free;
 use crate::geometry::prescribed::Prescribed;
 use crate::geometry::{Follow, Geometry};
 use crate::modal_bridge::ModalBridge;
+use crate::passage::Braking;
 use crate::passage::planned::Course;
 use crate::passage::settings::{Settings, Tail};
-use crate::passage::step_length::{MAX_STEPS, Steps};
-use crate::passage::{Braking, Direction};
+use crate::passage::step_length::MAX_STEPS;
 use crate::step::rolling::{Brakes, Rolling};
 use crate::step::stepper::{Scheme, State, Stepper, Unsettled};
-use crate::step::unit::{Moving, Propulsion};
 use crate::step::vehicle_step::VehicleSolve;
 use crate::step::vibration::{LOOK_EVERY, Vibration};
 use crate::stop_token::StopToken;
@@ -121,24 +121,16 @@ pub struct TimeLoop<'a> {
 
 impl<'a> TimeLoop<'a> {
     /// Ready to start.
-    pub fn new(model: &'a ModalBridge, courses: &'a [Course<'a>], settings: &'a Settings, steps: &Steps) -> Self {
-        let length = model.shapes.mesh().length();
-        let moving: Vec<Moving<'_>> = courses
-            .iter()
-            .map(|course| Moving {
-                assembly: course.vehicle.assembly(),
-                propulsion: if course.rolls { Propulsion::Rolling } else { Propulsion::Prescribed },
-                direction: course.direction.sign(),
-                grade: course.grade(settings, length),
-            })
-            .collect();
+    pub fn new(model: &'a ModalBridge, trip: &'a Trip<'a>, settings: &'a Settings) -> Self {
+        let Trip { courses, steps, length, .. } = trip;
+        let (length, moving) = (*length, trip.moving(settings));
         let Settings { beta, gravity, lift_off, .. } = *settings;
         let scheme = Scheme { h: steps.h, beta, gravity, lift_off };
         let mut history = History {
             axles: courses.last().map_or(0, |course| course.axles.end),
             modes: model.omega.len(),
             step: steps.h,
-            static_loads: courses.iter().flat_map(|course| course.vehicle.static_loads(gravity)).collect(),
+            static_loads: trip.static_loads(gravity),
             ..History::default()
         };
         for course in courses {
@@ -172,10 +164,7 @@ impl<'a> TimeLoop<'a> {
             history,
             ended: vec![None; courses.len()],
             loaded: false,
-            beyond: courses
-                .iter()
-                .map(|course| length - 1e-12 * (settings.approach + length + course.wheelbase()))
-                .collect(),
+            beyond: (0..courses.len()).map(|v| trip.beyond(v)).collect(),
             braking_since: vec![None; courses.len()],
         }
     }
@@ -285,15 +274,14 @@ impl<'a> TimeLoop<'a> {
     /// How far an own axle has come at a recorded instant, from the end at which the vehicle enters [m].
     fn way(&self, vehicle: usize, own: usize, row: usize) -> f64 {
         let course = &self.courses[vehicle];
-        let x = self.history.positions[row * self.history.axles + course.axles.start + own];
-        if course.direction == Direction::Right { x } else { self.length - x }
+        course.way(self.history.positions[row * self.history.axles + course.axles.start + own], self.length)
     }
 
     /// When, before the end of the last recorded step, an own axle came to a way; the end of the step if only now.
     fn passed(&self, vehicle: usize, own: usize, way: f64, time: f64) -> f64 {
         let last = self.history.len() - 1;
         let (before, now) = (self.way(vehicle, own, last.saturating_sub(1)), self.way(vehicle, own, last));
-        if now > before { time - self.h * ((now - way) / (now - before)).max(0.0) } else { time }
+        passed([before, now], way, time, self.h)
     }
 
     /// Sets the brakes for a step that ends at `time`.
@@ -362,37 +350,13 @@ impl<'a> TimeLoop<'a> {
 
     /// Refuses vehicles that overlap in one lane.
     fn check_apart<G: Geometry<f64>>(&self, time: f64, geometry: &G) -> Result<(), Error> {
-        let stretch = |course: &Course<'_>| {
-            let ends = [geometry.motion(course.axles.start).x, geometry.motion(course.axles.end - 1).x];
-            [ends[0].min(ends[1]), ends[0].max(ends[1])]
-        };
-        // As far as two come past each other in half a step, so that none passes unseen between two looks.
-        let margin = |a: &Course<'_>, b: &Course<'_>| {
-            0.5 * self.h * (geometry.motion(a.axles.start).v - geometry.motion(b.axles.start).v).abs()
-        };
-        // From its entry until it has left the bridge: before, a vehicle is only where its speed would have had it.
-        let there = |course: &Course<'_>| {
-            let last = geometry.motion(course.axles.end - 1).x;
-            let left = if course.direction == Direction::Right { last > self.length } else { last < 0.0 };
-            time >= course.entry && !left
-        };
-        for (j, second) in self.courses.iter().enumerate().skip(1).filter(|(_, second)| there(second)) {
-            let b = stretch(second);
-            let others = self.courses[..j].iter().enumerate();
-            for (i, first) in others.filter(|(_, first)| first.lane == second.lane && there(first)) {
-                let a = stretch(first);
-                let near = margin(first, second);
-                if a[0] <= b[1] + near && b[0] <= a[1] + near {
-                    let key = format!("vehicles[{i}] and vehicles[{j}], lane");
-                    let allowed = format!(
-                        "they overlap at t = {time:.3} s, from {:.2} to {:.2} m and from {:.2} to {:.2} m; enter later, \
-                         change the speed or use another lane",
-                        a[0], a[1], b[0], b[1]
-                    );
-                    return Err(Error::input(key, second.lane, allowed));
-                }
-            }
-        }
-        Ok(())
+        let motion = |axle: usize| geometry.motion(axle);
+        let Some([(i, a), (j, b)]) = overlap(self.courses, (time, self.h, self.length), motion) else { return Ok(()) };
+        let allowed = format!(
+            "they overlap at t = {time:.3} s, from {:.2} to {:.2} m and from {:.2} to {:.2} m; enter later, change the speed \
+             or use another lane",
+            a[0], a[1], b[0], b[1]
+        );
+        Err(Error::input(format!("vehicles[{i}] and vehicles[{j}], lane"), self.courses[j].lane, allowed))
     }
 }

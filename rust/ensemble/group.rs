@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::bounds::Searching;
 use super::table::{Chunk, Table};
 use super::tabulated::Tabulated;
-use crate::coordinate::Coordinate;
+use crate::coordinate::{Coordinate, shortened};
 use crate::crossing::tail::FreeRows;
 use crate::extremes::{Peaks, PlacedSteps, Seen, at_stop, interpolate};
 use crate::lane::{Lane, Lanes, Work};
@@ -179,6 +179,8 @@ impl<L: Lane> Default for Scratch<L> {
 struct Traveller<'g, 'a, L> {
     group: &'g mut Group<'a, L>,
     state: State<L>,
+    /// The modes a step before, in the tail.
+    before: Vec<Coordinate<L>>,
     /// Loads at rest, of the axles or of all together.
     static_loads: Vec<L>,
     /// What all axles weigh.
@@ -198,16 +200,23 @@ impl<L: Lane> Traveller<'_, '_, L> {
 
     /// Ends lanes on time: what ends within the step is cut short, and what has ended repeats the row before.
     #[inline(always)]
-    fn end(&self, step: usize, [before, row]: [&mut [L]; 2]) {
+    fn end(&self, step: usize, [before, row]: [&mut [L]; 2], widths: &Widths) {
         let (one, now) = (L::splat(1.0), L::splat(step as f64));
         let ends = &self.group.ends;
         let ended = ends.last.less(now);
         let ending = !(ended | now.less(ends.last));
         // A whole last step is not rounded.
         let short = !(!ending | !ends.fraction.less(one));
+        if L::any(short) {
+            // What is cut are the modes, not what the rows take of a bridge that is varied.
+            let modes = shortened(short, ends.fraction, &self.before, &self.state.modes);
+            write_modes(row, widths, &modes, self.group.bridge.as_ref());
+            for (b, a) in before.iter().zip(&mut *row).skip(widths.coordinates) {
+                *a = L::select(short, *b + ends.fraction * (*a - *b), *a);
+            }
+        }
         for (b, a) in before.iter().zip(row) {
-            let cut = *b + ends.fraction * (*a - *b);
-            *a = L::select(ended, *b, L::select(short, cut, *a));
+            *a = L::select(ended, *b, *a);
         }
     }
 
@@ -248,16 +257,22 @@ fn keep<L: Lane>(
     factors: Option<&BridgeFactors<L>>,
     (at_rest, increments): (&[L], &[L]),
 ) {
+    write_modes(kept, widths, modes, factors);
+    let loads = kept[widths.loads()..][..widths.axles].iter_mut();
+    for ((load, at_rest), increment) in loads.zip(at_rest).zip(increments) {
+        *load = *at_rest + *increment;
+    }
+}
+
+/// Keeps the modes of a step in its row.
+#[inline(always)]
+fn write_modes<L: Lane>(kept: &mut [L], widths: &Widths, modes: &[Coordinate<L>], factors: Option<&BridgeFactors<L>>) {
     let derivative = |order: usize, m: usize| match order {
         0 => modes[m].x,
         1 => modes[m].v,
         _ => modes[m].a,
     };
     widths.write_modes(kept, modes.len(), derivative, factors);
-    let loads = kept[widths.loads()..][..widths.axles].iter_mut();
-    for ((load, at_rest), increment) in loads.zip(at_rest).zip(increments) {
-        *load = *at_rest + *increment;
-    }
 }
 
 /// Keeps the accelerations of the bodies, which are rows over the coordinates of the vehicle.
@@ -309,7 +324,7 @@ impl<L: Lane> Work for Stepping<'_, '_, '_, L> {
             let [before, row] = tape.row_mut(step);
             traveller.keep(row, &widths);
             if place == Where::Tail {
-                traveller.end(step, [before, row]);
+                traveller.end(step, [before, row], &widths);
             }
             if scene.closely && !traveller.sound(step) {
                 return Err(Trouble::Failed(step, None));
@@ -368,7 +383,7 @@ impl<L: Lane, const K: usize, const N: usize, const LAW: u8, const M: usize> Wor
         geometry.go_to(steps.end - 1);
         if place == Where::Tail {
             for step in steps.clone() {
-                traveller.end(step, tape.row_mut(step));
+                traveller.end(step, tape.row_mut(step), &widths);
             }
         }
         if !traveller.sound(steps.end - 1) {
@@ -450,7 +465,7 @@ impl<L: Lane> Work for Driving<'_, '_, '_, L> {
             let [before, row] = tape.row_mut(step);
             traveller.keep(row, &widths);
             if place == Where::Tail {
-                traveller.end(step, [before, row]);
+                traveller.end(step, [before, row], &widths);
             }
         }
         if traveller.sound(steps.end - 1) { Ok(()) } else { Err(Trouble::Failed(steps.end - 1, None)) }
@@ -476,10 +491,12 @@ impl<L: Lane> Work for Swinging<'_, '_, '_, L> {
         let widths = tape.widths;
         for step in steps {
             if step >= alone {
+                let Traveller { before, state, .. } = &mut *traveller;
+                before.clone_from(&state.modes);
                 traveller.vibration.swing(&mut traveller.state.modes);
                 let [before, row] = tape.row_mut(step);
                 traveller.keep(row, &widths);
-                traveller.end(step, [before, row]);
+                traveller.end(step, [before, row], &widths);
             }
             let (now, last) = (L::splat(step as f64), traveller.group.ends.last);
             let ending = !(last.less(now) | now.less(last));
@@ -661,7 +678,8 @@ pub fn cross_group<'a, L: Lanes>(
     // Constant loads have no ride to speak of.
     let riding = if table.drive.is_some() { &[][..] } else { &of_axles };
     let vibration = engine.vibration();
-    let mut traveller = Traveller { group, state, static_loads, weight, vibration };
+    let before = Vec::new();
+    let mut traveller = Traveller { group, state, before, static_loads, weight, vibration };
     tape.begin(widths, 0, 1);
     // Before the first step there is nothing: it stands for the one before.
     traveller.keep(tape.row_mut(0)[0], &widths);
@@ -686,6 +704,10 @@ pub fn cross_group<'a, L: Lanes>(
         let with_vehicle = from..to.min(table.last() + 1);
         let alone = with_vehicle.end.max(from);
         if !with_vehicle.is_empty() {
+            if place == Where::Tail {
+                // It is followed for one step more.
+                traveller.before.clone_from(&traveller.state.modes);
+            }
             let (traveller, steps) = (&mut traveller, with_vehicle);
             match engine {
                 Engine::Coupled(steppers, geometry) => {

@@ -12,6 +12,7 @@ use crate::memory;
 use crate::recovery::Place;
 use crate::step::driving::Drive;
 use crate::stops::Stop;
+use crate::survey::Windows;
 use crate::tape::{CHUNK, PARTS};
 
 /// What there is room for.
@@ -51,6 +52,9 @@ impl<'a> Room<'a> {
             (size_of::<Pace>() + size_of::<f64>() * (axles + 4 * study.look.chosen.len())) as f64
         };
         let results = results + if study.shares { marches.iter().map(stays).sum::<f64>() } else { 0.0 };
+        // Those on their own ways share the windows of all influence lines.
+        let own_ways = !study.shares || !samples.kinds.is_empty();
+        let results = results + if own_ways { 2.0 * Windows::bytes(&study.analysis.rows) } else { 0.0 };
         let least = |march: &March| room.of_march(*march, false);
         let (worst, need) = match study.shares {
             false => (None, room.of_worker()),

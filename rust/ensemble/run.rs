@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
-use std::sync::{Mutex, PoisonError, RwLock};
+use std::sync::{Mutex, OnceLock, RwLock};
 
 use rayon::prelude::*;
 
 use super::clock::{Clock, Pace};
+use super::own_ways;
 use super::results::{Failure, Format, Record, Results};
 use super::room::Room;
 use super::sample::Samples;
-use super::shelf::{FEW, Shelf};
+use super::shelf::{Shelf, are_few};
 use super::side_by_side::{Part, Task};
-use super::single;
 use super::study::{March, Study};
 use super::table::Layout;
 use super::varied::vehicles;
@@ -74,57 +74,62 @@ impl Study {
         let share = count.div_ceil(4 * working).next_multiple_of(side_by_side).max(side_by_side);
         let chunk = workers.chunk.unwrap_or(share.min(BLOCK));
         let shelf = |(&march, members): (&March, &Vec<u32>)| {
-            let many = members.len() > FEW && room.lays_out(march);
-            let layout = if many { self.layout(march.0, samples) } else { Layout::Bare };
-            Shelf::new(march, layout, members.len().div_ceil(chunk))
+            let (kind, driven) = (march.0, self.is_driven(march.0));
+            let fit = driven || own_ways::have_room(self, self.vehicle(kind).assembly().contacts.len());
+            let few = fit && are_few(members.len(), driven);
+            let laid_out = !few && room.lays_out(march);
+            let layout = if laid_out { self.layout(kind, samples) } else { Layout::Bare };
+            Shelf::new(march, few, layout, members.len().div_ceil(chunk))
         };
         let shelves: Vec<Shelf> = distinct.iter().filter(|_| self.shares).map(shelf).collect();
         let lost_rows = lost.len();
-        let portions = portions(&distinct, &mut results, chunk);
+        let few = |march: usize| shelves.get(march).is_some_and(|shelf| shelf.few);
+        let portions = portions(&distinct, few, &mut results, chunk);
         progress.done.fetch_add(lost.len(), Ordering::Relaxed);
         let failures = Mutex::new(lost);
-        // Read by every crossing under way, written by one that needs the memory to itself.
+        // Of crossings by themselves.
         let company = RwLock::new(());
+        let own_ways = OnceLock::new();
         let work = |portion: Portion<'_>| {
-            let Portion { march, members, mut records, digests } = portion;
+            let Portion { marches: of_portion, members, mut records, digests } = portion;
             let (stop, mut failed) = (StopToken::when(&stopped), Vec::new());
-            if let Some(shelf) = shelves.get(march) {
-                stop.check()?;
-                let shared = shelf.take(self, &format, stop)?;
-                let task = Task { study: self, format, samples, kind: marches[march].0, shared: &shared };
-                let (records, failed) = (&mut records[..], &mut failed);
-                let part = Part { task, members, records, failed, stop };
-                if shared.table.laid_out {
-                    with(workers.isa, part)?
-                } else {
-                    part.run::<f64>()?
-                }
-                shelf.give_back();
-            } else {
-                for (&member, record) in members.iter().zip(&mut records) {
-                    let sample = member as usize;
-                    let mut cross = || single::cross(self, &format, samples, sample, record, stop);
-                    let beside = {
-                        let _beside = company.read().unwrap_or_else(PoisonError::into_inner);
-                        cross()
-                    };
-                    let crossed = match beside {
-                        // Where there is no room beside others there may be when they have ended.
-                        Err(Error::Memory { .. }) => {
-                            let _by_itself = company.write().unwrap_or_else(PoisonError::into_inner);
-                            cross()
-                        }
-                        beside => beside,
-                    };
-                    match crossed {
-                        Ok(()) => {}
-                        // That there is no memory says nothing of the sample.
-                        Err(cause @ (Error::Interrupted | Error::Memory { .. })) => return Err(cause),
-                        Err(cause) => {
-                            record.forget();
-                            failed.push(Failure { sample, step: cause.step(), cause });
-                        }
+            stop.check()?;
+            let (study, failures_here) = (self, &mut failed);
+            match of_portion[..] {
+                [march] if shelves.get(march).is_some_and(|shelf| !shelf.few) => {
+                    let shelf = &shelves[march];
+                    let shared = shelf.take(self, &format, stop)?;
+                    let task = Task { study, format, samples, kind: marches[march].0, shared: &shared };
+                    let (members, records, failed) = (&members, &mut records[..], failures_here);
+                    let part = Part { task, members, records, failed, stop };
+                    if shared.table.laid_out {
+                        with(workers.isa, part)?;
+                    } else {
+                        part.run::<f64>()?;
                     }
+                    shelf.give_back();
+                }
+                _ => {
+                    let shared = own_ways.get_or_init(|| own_ways::Shared::new(self, samples));
+                    let of_members: Vec<(March, &Shelf)> = match self.shares {
+                        true => of_portion.iter().map(|&march| (marches[march], &shelves[march])).collect(),
+                        false => Vec::new(),
+                    };
+                    let (marches, members, company) = (&of_members, &members, &company);
+                    let (records, failed) = (&mut records[..], failures_here);
+                    let part = own_ways::Part {
+                        study,
+                        shared,
+                        marches,
+                        company,
+                        format,
+                        samples,
+                        members,
+                        records,
+                        failed,
+                        stop,
+                    };
+                    with(workers.isa, part)?;
                 }
             }
             for (record, digest) in records.iter().zip(digests) {
@@ -194,31 +199,51 @@ pub struct Run {
 
 /// What a worker takes at a time.
 struct Portion<'a> {
-    march: usize,
-    members: &'a [u32],
+    /// The march of all, or, of those that are few, that of each.
+    marches: Vec<usize>,
+    members: Vec<u32>,
     records: Vec<Record<'a>>,
     digests: &'a mut [u64],
 }
 
-/// The samples of each march in portions, with the rows that they fill, which follow each other in this order; the rows
-/// behind them are those of samples without a result.
-fn portions<'a>(distinct: &'a BTreeMap<March, Vec<u32>>, results: &'a mut Results, chunk: usize) -> Vec<Portion<'a>> {
+/// The samples of each march in portions, those of marches of few together, with the rows that they fill, which follow
+/// each other in this order; the rows behind them are those of samples without a result.
+fn portions<'a>(
+    distinct: &BTreeMap<March, Vec<u32>>,
+    few: impl Fn(usize) -> bool,
+    results: &'a mut Results,
+    chunk: usize,
+) -> Vec<Portion<'a>> {
+    let mut parts: Vec<(Vec<usize>, Vec<u32>)> = Vec::new();
+    for (march, members) in distinct.values().enumerate() {
+        if !few(march) {
+            parts.extend(members.chunks(chunk).map(|members| (vec![march], members.to_vec())));
+            continue;
+        }
+        for &member in members {
+            match parts.last_mut() {
+                Some((marches, members)) if members.len() < chunk && few(marches[0]) => {
+                    marches.push(march);
+                    members.push(member);
+                }
+                _ => parts.push((vec![march], vec![member])),
+            }
+        }
+    }
     let (width, instants) = (results.format.width(), results.format.instants());
     let mut numbers = &mut results.numbers[..];
     let mut moments = &mut results.instants[..];
     let mut digests = &mut results.digests[..];
     let mut portions = Vec::new();
-    for (march, members) in distinct.values().enumerate() {
-        for members in members.chunks(chunk) {
-            let n = members.len();
-            let (own_numbers, rest_numbers) = std::mem::take(&mut numbers).split_at_mut(n * width);
-            let (own_moments, rest_moments) = std::mem::take(&mut moments).split_at_mut(n * instants);
-            let (own_digests, rest_digests) = std::mem::take(&mut digests).split_at_mut(n);
-            (numbers, moments, digests) = (rest_numbers, rest_moments, rest_digests);
-            let rows = own_numbers.chunks_exact_mut(width).zip(own_moments.chunks_exact_mut(instants.max(1)));
-            let records = rows.map(|(numbers, instants)| Record { numbers, instants }).collect();
-            portions.push(Portion { march, members, records, digests: own_digests });
-        }
+    for (marches, members) in parts {
+        let n = members.len();
+        let (own_numbers, rest_numbers) = std::mem::take(&mut numbers).split_at_mut(n * width);
+        let (own_moments, rest_moments) = std::mem::take(&mut moments).split_at_mut(n * instants);
+        let (own_digests, rest_digests) = std::mem::take(&mut digests).split_at_mut(n);
+        (numbers, moments, digests) = (rest_numbers, rest_moments, rest_digests);
+        let rows = own_numbers.chunks_exact_mut(width).zip(own_moments.chunks_exact_mut(instants.max(1)));
+        let records = rows.map(|(numbers, instants)| Record { numbers, instants }).collect();
+        portions.push(Portion { marches, members, records, digests: own_digests });
     }
     let rows = numbers.chunks_exact_mut(width).zip(moments.chunks_exact_mut(instants.max(1)));
     for ((numbers, instants), digest) in rows.zip(digests) {

@@ -15,13 +15,23 @@ use super::tabulated::Shared;
 use crate::error::Error;
 use crate::stop_token::StopToken;
 
-/// To march so many samples one after the other is less work than to lay out the geometry for all.
-pub const FEW: usize = 2;
+/// So many samples are less work on their own ways than to lay out the geometry for all.
+const FEW: usize = 8;
+
+/// The same of constant loads, which nobody else's go beside.
+const FEW_DRIVEN: usize = 2;
+
+/// Whether so many samples of a march are few.
+pub fn are_few(samples: usize, driven: bool) -> bool {
+    samples <= if driven { FEW_DRIVEN } else { FEW }
+}
 
 /// The place of a march.
 #[derive(Debug)]
 pub struct Shelf {
     march: March,
+    /// Whether its samples are few: they go their own ways, and nothing is laid out for them.
+    pub few: bool,
     layout: Layout,
     shared: Mutex<Option<Arc<Shared>>>,
     /// Portions of its samples that are not done.
@@ -32,9 +42,9 @@ pub struct Shelf {
 
 impl Shelf {
     /// Of a march that this many portions of samples take.
-    pub fn new(march: March, layout: Layout, portions: usize) -> Self {
+    pub fn new(march: March, few: bool, layout: Layout, portions: usize) -> Self {
         let left = AtomicUsize::new(portions);
-        Shelf { march, layout, shared: Mutex::new(None), left, stays: OnceLock::new() }
+        Shelf { march, few, layout, shared: Mutex::new(None), left, stays: OnceLock::new() }
     }
 
     /// What its samples share, made now if nobody has.
@@ -55,6 +65,11 @@ impl Shelf {
         if self.left.fetch_sub(1, Ordering::Relaxed) == 1 {
             *self.shared.lock().unwrap_or_else(PoisonError::into_inner) = None;
         }
+    }
+
+    /// Leaves static extremes that were found otherwise.
+    pub fn leave(&self, statics: impl FnOnce() -> Vec<f64>) {
+        self.stays.get_or_init(statics);
     }
 
     /// Static extremes, largest of all responses and then smallest; not numbers where no sample came.

@@ -1,4 +1,4 @@
-//! Samples with motion of their own (braking, several vehicles, to the left): each a single crossing, through the same step.
+//! Samples that go beside nobody (rolling freely, standing on their way): each a single crossing, through the same step.
 
 use std::sync::Arc;
 

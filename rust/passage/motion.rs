@@ -94,6 +94,18 @@ impl Motion {
         Coordinate { x: x + dt * (v + 0.5 * a * dt), v: v + a * dt, a }
     }
 
+    /// The piece that holds at time t [s]: way, speed and acceleration at its beginning, when that is, and when the next
+    /// begins. Before the first the speed is as there.
+    pub fn piece(&self, t: f64) -> (Coordinate<f64>, [f64; 2]) {
+        let after = self.pieces.partition_point(|piece| piece.0 <= t);
+        let until = self.pieces.get(after).map_or(f64::INFINITY, |piece| piece.0);
+        let (from, mut begun) = self.pieces[after.saturating_sub(1)];
+        if after == 0 {
+            begun.a = 0.0;
+        }
+        (begun, [from, until])
+    }
+
     /// When the front comes to x, if it does.
     pub fn time_at(&self, x: f64) -> Option<f64> {
         let last = self.pieces.len() - 1;

@@ -195,8 +195,13 @@ impl<'a> Course<'a> {
         if self.direction == Direction::Right { way } else { length - way }
     }
 
+    /// How far a place [m] is from the end of the bridge at which it enters.
+    pub fn way(&self, x: f64, length: f64) -> f64 {
+        if self.direction == Direction::Right { x } else { length - x }
+    }
+
     /// The line from which it feels its road: see [`Road::datum`].
-    fn datum(&self, settings: &Settings, length: f64) -> Datum {
+    pub fn datum(&self, settings: &Settings, length: f64) -> Datum {
         self.road.datum(self.place(-settings.approach, length), self.place(length, length))
     }
 

@@ -81,8 +81,16 @@ pub struct Steps {
     /// Way per step [m] of a vehicle alone at constant speed, which is marched in space: its axles are at the same
     /// places after as many steps whatever its speed.
     pub advance: Option<f64>,
-    /// Of the memory that they take, until the crossing is over.
-    _promise: Promise,
+    /// What a history of them takes.
+    kept: Kept,
+}
+
+/// Memory for the states of all steps, and who is to blame for it.
+struct Kept {
+    key: &'static str,
+    value: String,
+    steps: f64,
+    bytes: f64,
 }
 
 impl Steps {
@@ -183,9 +191,26 @@ impl Steps {
         let (key, value) = blamed(MAX_HISTORY_BYTES / bytes).unwrap_or(("modes", modes.to_string()));
         // As many steps of a tail that is not given as room is made for at the start.
         let kept = steps + if settings.tail == Tail::Free { count.min(tail as f64) } else { 0.0 };
+        let kept = Kept { key, value, steps: kept, bytes };
+        Ok(Steps { h, count: count as usize, tail, advance, kept })
+    }
+
+    /// So many steps in space, in a time of h [s] and of this way [m] each, and a tail of so many more at most.
+    pub fn of(count: usize, h: f64, advance: f64, tail: usize) -> Self {
+        let kept = Kept { key: "step", value: format!("{h:e} s"), steps: 0.0, bytes: 0.0 };
+        Steps { h, count, tail, advance: Some(advance), kept }
+    }
+
+    /// Whether their states may be kept.
+    pub fn may_be_kept(&self) -> bool {
+        self.kept.steps * self.kept.bytes <= MAX_HISTORY_BYTES
+    }
+
+    /// Memory for the states of all of them, until that is given back.
+    pub fn promise(&self) -> Result<Promise, Error> {
+        let Kept { key, value, steps, bytes } = &self.kept;
         let mend = "use fewer modes or a longer step";
-        let promise = memory::promise(key, value, kept * bytes, MAX_HISTORY_BYTES, &format!("{kept:.3e} steps"), mend)?;
-        Ok(Steps { h, count: count as usize, tail, advance, _promise: promise })
+        memory::promise(key, value, steps * bytes, MAX_HISTORY_BYTES, &format!("{steps:.3e} steps"), mend)
     }
 
     /// How many steps of a way at most [m] a path takes, and the way of each.

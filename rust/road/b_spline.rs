@@ -57,26 +57,47 @@ impl Taps {
         let per_metre = points as f64 / period;
         let position = x * per_metre;
         let cell = position.floor();
-        let t = position - cell;
-        let s = 1.0 - t;
-        // B-splines have the values (1, 4, 1)/6 at the grid points.
-        let sixth = 1.0 / 6.0;
-        let value = [
-            s * s * s * sixth,
-            (4.0 + t * t * (3.0 * t - 6.0)) * sixth,
-            (4.0 + s * s * (3.0 * s - 6.0)) * sixth,
-            t * t * t * sixth,
-        ];
-        let slope = [-0.5 * s * s, t * (1.5 * t - 2.0), s * (2.0 - 1.5 * s), 0.5 * t * t].map(|w| w * per_metre);
-        let curvature = [s, 3.0 * t - 2.0, 3.0 * s - 2.0, t].map(|w| w * per_metre * per_metre);
-        Taps { first: (cell as i64).wrapping_sub(1) as usize, weights: [value, slope, curvature] }
+        Taps { first: first(cell), weights: weights(position - cell, per_metre) }
     }
+}
+
+/// Number of the first of the four coefficients that count in a cell of the grid.
+#[inline(always)]
+pub fn first(cell: f64) -> usize {
+    (cell as i64).wrapping_sub(1) as usize
+}
+
+/// Weights of these four in value, slope and curvature where a cell has been gone through as far as t, of so many per metre.
+#[inline(always)]
+pub fn weights<L: Lane>(t: L, per_metre: f64) -> [[L; 4]; 3] {
+    let [half, one_and_half, two, three, four, six] = [0.5, 1.5, 2.0, 3.0, 4.0, 6.0].map(L::splat);
+    // B-splines have the values (1, 4, 1)/6 at the grid points.
+    let (s, sixth, per_metre) = (L::splat(1.0) - t, L::splat(1.0 / 6.0), L::splat(per_metre));
+    let value = [
+        s * s * s * sixth,
+        (four + t * t * (three * t - six)) * sixth,
+        (four + s * s * (three * s - six)) * sixth,
+        t * t * t * sixth,
+    ];
+    let [a, b, c, d] = [-half * s * s, t * (one_and_half * t - two), s * (two - one_and_half * s), half * t * t];
+    let slope = [a * per_metre, b * per_metre, c * per_metre, d * per_metre];
+    let [a, b, c, d] = [s, three * t - two, three * s - two, t];
+    let curvature =
+        [a * per_metre * per_metre, b * per_metre * per_metre, c * per_metre * per_metre, d * per_metre * per_metre];
+    [value, slope, curvature]
 }
 
 /// Four numbers with their weights.
 #[inline(always)]
 pub fn weighted<L: Lane>(weights: [f64; 4], near: [L; 4]) -> L {
+    let [of_a, of_b, of_c, of_d] = weights;
+    sum([L::splat(of_a), L::splat(of_b), L::splat(of_c), L::splat(of_d)], near)
+}
+
+/// The same with weights of each lane.
+#[inline(always)]
+pub fn sum<L: Lane>(weights: [L; 4], near: [L; 4]) -> L {
     let [a, b, c, d] = near;
     let [of_a, of_b, of_c, of_d] = weights;
-    (L::splat(of_a) * a + L::splat(of_b) * b) + (L::splat(of_c) * c + L::splat(of_d) * d)
+    (of_a * a + of_b * b) + (of_c * c + of_d * d)
 }

@@ -258,6 +258,11 @@ impl<L: Lane> Stepper<L> {
         self.gait
     }
 
+    /// How many modes it moves.
+    pub fn modes(&self) -> usize {
+        self.form.modes
+    }
+
     /// The bridge by itself.
     pub fn vibration(&self) -> Vibration<L> {
         Vibration::new(self.newmark, self.modal.clone())
@@ -308,6 +313,17 @@ impl<L: Lane> Stepper<L> {
             HALF_CAR if !cfg!(debug_assertions) => self.drive(Form { modes, ..HALF_CAR }, state, geometry, known, desk),
             _ => self.drive(form, state, geometry, known, desk),
         };
+        self.room = room;
+        driven
+    }
+
+    /// The same where only numbers tell what kind of step it is, which is slower, and quicker to compile.
+    #[inline(always)]
+    pub fn advance_any(&mut self, state: &mut State<L>, geometry: &mut impl Geometry<L>) -> Result<(), Unsettled> {
+        let form = Form { passive: self.form.passive || self.form.bare && geometry.steady(), ..self.form };
+        geometry.advance();
+        let mut room = std::mem::take(&mut self.room);
+        let driven = self.drive(form, state, &*geometry, None, &mut room.desk());
         self.room = room;
         driven
     }

@@ -183,6 +183,12 @@ pub struct Reach<L> {
 }
 
 impl<L: Lane> Reach<L> {
+    /// That of one lane.
+    pub fn one(&self, lane: usize) -> Reach<f64> {
+        let modes = self.modes.iter().map(|mode| mode.get(lane)).collect();
+        Reach { modes, apart: self.apart, velocity: self.velocity.get(lane) }
+    }
+
     /// Of a bridge on whose A and Ȧ the rows have these factors, as [`crate::ensemble`] varies bridges.
     pub fn scaled(mut self, coordinates: L, rates: L) -> Self {
         self.modes.iter_mut().for_each(|mode| *mode = coordinates * *mode);
