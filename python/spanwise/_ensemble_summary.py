@@ -114,7 +114,7 @@ def _description(ensemble: Ensemble) -> Iterator[str]:
     way = (
         "side by side, for they share their geometry"
         if ensemble.shares_geometry
-        else "each on its own way, for they do not share their geometry, which takes a few times as long"
+        else "each on its own way, for they do not share it, which takes a few times as long"
     )
     yield f"marched   {way}"
     yield (

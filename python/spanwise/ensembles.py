@@ -76,8 +76,8 @@ class Ensemble:
     elapsed : float
         Time that it took [s].
     shares_geometry : bool
-        Whether the samples shared where their axles stand; if not, each went its own way, which takes
-        a few times as long.
+        Whether the samples shared where their axles stand; if not, each went its own way, which
+        takes a few times as long.
     """
 
     def __init__(self, plan: Plan, rows: Rows) -> None:
